@@ -176,4 +176,9 @@ Dataset in_memory(const Raster& raster, double nodata) {
   return dataset;
 }
 
+Dataset open_ascii_grid(const std::string& path, unsigned how) {
+  const std::array<const char*, 2> drivers{"AAIGrid", nullptr}, options{"DATATYPE=Float64", nullptr};
+  return Dataset(GDALDataset::Open(path.c_str(), how, drivers.data(), options.data()));
+}
+
 }  // namespace talus::gdal

@@ -43,6 +43,10 @@ struct CloseDataset {
 };
 using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
+/// Opens an ASCII grid, in double precision: GDAL would keep seven digits, and 2345.678 m have as many; and where it is
+/// not told the type, it looks through all cells for it and never ends that where a reading fails. `how`: GDAL_OF_...
+Dataset open_ascii_grid(const std::string& path, unsigned how);
+
 /// Destroys a transformation of OGR when its owner goes.
 struct DestroyTransformation {
   void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }

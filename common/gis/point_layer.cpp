@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
-#include <array>
-
 #include "common/gis/ascii_grid.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
@@ -20,14 +18,11 @@ gdal::Dataset open(const fs::path& file, unsigned kind) {
   return gdal::Dataset(GDALDataset::Open(file.c_str(), kind | GDAL_OF_READONLY));
 }
 
-/// A raster by its header: of an ASCII grid, GDAL would look through all cells for their type, and never ends that
-/// where a reading fails.
+/// An ASCII grid is opened as one, so that its cells are not looked at.
 gdal::Dataset open_raster(const fs::path& file) {
   if (!gdal::begins_as_ascii_grid(file)) return open(file, GDAL_OF_RASTER);
   gdal::require_local(file);
-  const std::array<const char*, 2> drivers{"AAIGrid", nullptr}, options{"DATATYPE=Float64", nullptr};
-  return gdal::Dataset(
-      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), options.data()));
+  return gdal::open_ascii_grid(file.string(), GDAL_OF_RASTER | GDAL_OF_READONLY);
 }
 
 bool is_point(const OGRGeometry* geometry) {

@@ -16,12 +16,9 @@ namespace talus::gdal {
 namespace fs = std::filesystem;
 namespace {
 
-/// Cells of ASCII grids in double precision: GDAL would keep seven digits, and 2345.678 m have as many.
 Dataset open_any(const fs::path& file, const AsciiGrid& ascii) {
   constexpr unsigned how = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
-  if (!ascii.is_one()) return Dataset(GDALDataset::Open(file.c_str(), how));
-  const std::array<const char*, 2> drivers{"AAIGrid", nullptr}, options{"DATATYPE=Float64", nullptr};
-  return Dataset(GDALDataset::Open(ascii.path().c_str(), how, drivers.data(), options.data()));
+  return ascii.is_one() ? open_ascii_grid(ascii.path(), how) : Dataset(GDALDataset::Open(file.c_str(), how));
 }
 
 Dataset open(const fs::path& file, const AsciiGrid& ascii) {
