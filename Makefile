@@ -157,8 +157,9 @@ validate: with-tests ## error beside tolerance, docs/explanation/validation.md [
 check-faults: with-tests ## kills, failing calls, processes in one folder, power cuts: all tables [SCENES="run slides"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
 	@for scene in $(or $(SCENES),run ensemble budget slides); do \
-	  python3 tests/faults/faults.py --full --scene $$scene --bin $(BUILD)/bin --shim $(BUILD)/bin/talus-faults.so \
-	    --work $(BUILD)/scratch/check-faults --table $(BUILD)/faults-$$scene.md || exit 1; done
+	  /usr/bin/python3 tests/faults/faults.py --full --scene $$scene --bin $(BUILD)/bin \
+	    --shim $(BUILD)/bin/talus-faults.so --work $(BUILD)/scratch/check-faults \
+	    --table $(BUILD)/faults-$$scene.md || exit 1; done
 
 check-three-d: build ## what runs leave in 3d/, opened by ParaView, Blender and OpenVDB's Python; pictures compared
 	@tools/install-dependencies.sh three-d
@@ -170,7 +171,8 @@ check-qgis: build ## the plugin and the projects of results, in QGIS itself, whi
 	  --work $(BUILD)/scratch/check-qgis $(if $(CHECKS),--only $(CHECKS))
 
 check-recipes: build ## random recipes: a result that holds or a clear refusal [RECIPES=500] [RECIPE_JOBS=2]
-	@tools/check-recipes.py --bin $(BUILD)/bin --out $(BUILD)/recipes --count $(RECIPES) --jobs $(RECIPE_JOBS)
+	@/usr/bin/python3 tools/check-recipes.py --bin $(BUILD)/bin --out $(BUILD)/recipes \
+	  --count $(RECIPES) --jobs $(RECIPE_JOBS)
 
 lint: ## formatting and static analysis of everything [CHANGED=n: analyse only the n units changed last]
 	@tools/install-dependencies.sh lint

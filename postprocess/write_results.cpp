@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/write_results.hpp"
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,20 +29,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> text_of(const fs::path& file) {
-  require_plain(file);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-}
-
 /// What preprocess and solve left beside the run about themselves, where it is of this run.
 std::vector<StageText> texts_of_stages(const fs::path& folder, const RunSummary& run) {
   std::vector<StageText> texts;
   const std::string domain = fact(run.provenance, domain_id);
   for (const auto& [stage, id] : {std::pair{"preprocess", domain}, std::pair{"solve", fact(run.provenance, run_id)}}) {
     const fs::path file = folder / (std::string(stage) + ".used.toml");
-    std::optional<std::string> text = text_of(file);
+    std::optional<std::string> text = text_if_there(file);
     if (text && !is_used_recipe_of(*text, id)) {
       log_warning(fmt::format("{}: it is of another run than {}; the report leaves it out", file.string(), id));
       text.reset();
@@ -157,7 +148,7 @@ void write_results(StageContext& context, const Job& job, const Stage& stage) {
   if (options.report) {
     auto stages = texts_of_stages(file.parent_path(), run.summary);
     stages.push_back({"postprocess", used});
-    const auto comparison = text_of(file.parent_path() / "survey" / "survey.json");
+    const auto comparison = text_if_there(file.parent_path() / "survey" / "survey.json");
     write("report.html", report_html({run, options, survey, score, thalweg, std::move(stages), comparison, file,
                                       &hazard, budget ? &*budget : nullptr}));
   }

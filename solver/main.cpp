@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // talus-solve: domain.vdb -> run.h5.
 #include <filesystem>
-#include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +15,7 @@
 #include "common/run/run_facts.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/budget/budget_stage.hpp"
@@ -202,7 +203,7 @@ void solve_itself(StageContext& context, const SolveFlags& flags) {
 /// went on from is removed, and what was used is noted.
 void complete_run(StageContext& context) {
   const RunPaths paths(context.out);
-  std::ifstream noted(context.out / "solve.used.toml");
+  std::istringstream noted(text_if_there(context.out / "solve.used.toml").value_or(""));
   const std::string mark = "# id: " + fact(run_facts(paths.run), run_id);
   for (std::string line; std::getline(noted, line);)
     if (line == mark) return;

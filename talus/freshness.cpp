@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "common/domain/domain_facts.hpp"
@@ -14,6 +12,7 @@
 #include "common/ensemble/slide_options.hpp"
 #include "common/run/run_facts.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::command {
@@ -22,12 +21,6 @@ namespace {
 
 fs::path note_of(const Request& request, const StageState& state) {
   return request.out / ".inputs" / (state.stage + ".toml");
-}
-
-std::optional<std::string> text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), {});
 }
 
 /// A note without its first line, the arguments: where a stage ran does not make its results stale.
@@ -73,7 +66,7 @@ std::string other_recipe(const Request& request, const recipe::Recipe& recipe, c
 /// Why the stage runs, as far as the recipe tells.
 std::string changed_recipe(const Request& request, const recipe::Recipe& recipe, const StageState& state) {
   const std::string name = state.depends.results.front().filename().string();
-  const auto noted = text_of(note_of(request, state));
+  const auto noted = text_if_there(note_of(request, state));
   if (noted && table_of(*noted) != state.own_table && without_budget(table_of(*noted)) != state.own_table)
     return fmt::format("[{}] or [scene] has changed", state.stage);
   if (!noted && state.stage == "postprocess") return fmt::format("nobody noted what {} was made with", name);
@@ -120,7 +113,7 @@ void note(const Request& request, const StageState& state) {
   const std::string arguments = state.stage == "solve" ? "--on " + request.on : "";
   const std::string text = fmt::format("# arguments: {}\n{}", arguments, state.own_table);
   const fs::path file = note_of(request, state);
-  const auto noted = text_of(file);
+  const auto noted = text_if_there(file);
   if (noted && table_of(*noted) == state.own_table) return;  // as old as the results that were made with it
   write_text(file, text);
 }

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 
 #include <nlohmann/json.hpp>
 
@@ -15,6 +13,7 @@
 #include "common/gis/read_raster.hpp"
 #include "common/recipe/values.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 #include "talus/request.hpp"
 #include "talus/slide.hpp"
@@ -103,8 +102,7 @@ Found find_slide(const NewScene& scene, const fs::path& out) {
   if (fs::exists(rose)) deposit = read_raster(rose);
   if (deposit && deposit->values.size() != domain.grid.count()) deposit.reset();
   Found found{measure_slide(domain.before, domain.release_thickness, deposit)};
-  std::ifstream stream(out / "survey" / "survey.json");
-  const auto survey = nlohmann::json::parse(stream, nullptr, false);
+  const auto survey = nlohmann::json::parse(text_if_there(out / "survey" / "survey.json").value_or(""), nullptr, false);
   if (!survey.is_discarded() && survey.contains("source") && survey["source"]["error_m3"].is_number())
     found.volume_error = survey["source"]["error_m3"].get<double>();
   const double cells = found.slide.area / (found.slide.cell * found.slide.cell);

@@ -55,6 +55,7 @@ Contents read_all(const fs::path& file) {
     openvdb::io::Stream archive(stream, false);
     return {archive.getGrids(), archive.getMetadata()};
   } catch (const std::ios_base::failure&) {
+    require_read(stream, file);
     refuse(file, "ends too early", "the file is truncated: its writing or copying was cut short", again);
   } catch (const std::exception& error) {  // OpenVDB throws its own and std:: kinds on bytes that make no sense
     refuse(file, "cannot be read", std::string("the file is damaged: ") + error.what(), again);

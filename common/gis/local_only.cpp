@@ -72,6 +72,7 @@ bool is_xml(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string start(512, '\0');
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  require_read(stream, file);
   start.resize(static_cast<std::size_t>(stream.gcount()));
   const std::size_t first = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == std::string::npos || start[first] != '<') return false;

@@ -6,42 +6,22 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include "common/recipe/overrides.hpp"
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/shown_paths.hpp"
 #include "common/recipe/suggest.hpp"
+#include "common/stage/input_file.hpp"
 
 namespace talus::recipe {
 namespace fs = std::filesystem;
 namespace {
 
-std::string read_whole(const fs::path& file) {
-  const auto refuse = [&](const std::string& reason) {
-    throw RecipeError(Fault{file.string() + ": the recipe cannot be read", reason, "Check the path"});
-  };
-  if (fs::is_directory(file)) refuse("it is a folder");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  constexpr std::size_t most = 16 << 20;  // far beyond any recipe: a device would never end
-  std::string text;
-  const std::istreambuf_iterator<char> end;
-  try {
-    for (auto c = std::istreambuf_iterator<char>(stream); c != end && text.size() <= most; ++c) text += *c;
-  } catch (const std::ios_base::failure&) {  // the disk fails under the stream
-    refuse(std::generic_category().message(errno));
-  }
-  if (text.size() > most) refuse("it is longer than 16 MB");
-  if (!stream) refuse(std::generic_category().message(errno));
-  return text;
-}
-
 toml::table parse(const fs::path& file) {
-  const std::string text = read_whole(file);
+  constexpr std::uintmax_t most = 16 << 20;  // far beyond any recipe
+  const std::string text = whole_text(file, most, [&](const std::string& reason) {
+    throw RecipeError(Fault{file.string() + ": the recipe cannot be read", reason, "Check the path"});
+  });
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {

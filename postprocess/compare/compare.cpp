@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "common/gis/crs.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
@@ -16,18 +13,12 @@ namespace talus::postprocess {
 namespace fs = std::filesystem;
 namespace {
 
-std::string text_of(const fs::path& file) {
-  require_plain(file);
-  std::ifstream stream(file, std::ios::binary);
-  return stream ? std::string(std::istreambuf_iterator<char>(stream), {}) : std::string();
-}
-
 /// The run of a folder with what its stages left there, as far as it is of that run.
 ComparedRun read_compared(const fs::path& folder, const fs::path& file) {
   ComparedRun compared{.name = folder.filename().string(), .run = read_run(file), .score = {}, .used = {}};
   const Facts& facts = compared.run.summary.provenance;
   const std::string id = fact(facts, run_id);
-  compared.score = text_of(folder / "score.json");
+  compared.score = text_if_there(folder / "score.json").value_or("");
   if (!id.empty() && !compared.score.empty() && compared.score.find('"' + id + '"') == std::string::npos) {
     log_warning(
         fmt::format("{}: it is of another run than {}; the page leaves it out", (folder / "score.json").string(), id));
@@ -35,7 +26,7 @@ ComparedRun read_compared(const fs::path& folder, const fs::path& file) {
   }
   for (const auto& [stage, of] :
        {std::pair{"preprocess", fact(facts, domain_id)}, {"solve", id}, {"postprocess", {}}}) {
-    const std::string used = text_of(folder / (std::string(stage) + ".used.toml"));
+    const std::string used = text_if_there(folder / (std::string(stage) + ".used.toml")).value_or("");
     if (!used.empty() && is_used_recipe_of(used, of)) compared.used.push_back(used);
   }
   return compared;

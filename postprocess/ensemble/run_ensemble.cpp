@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/ensemble/run_ensemble.hpp"
 
-#include <fstream>
-#include <iterator>
-
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
@@ -107,14 +104,8 @@ void write_results(StageContext& context, const Stage& stage, const Options& opt
 
 std::vector<StageText> texts_of_stages(const StageContext& context, const std::string& used) {
   std::vector<StageText> texts;
-  for (const char* name : {"preprocess", "solve"}) {
-    const fs::path file = context.out / (std::string(name) + ".used.toml");
-    texts.push_back({name, std::nullopt});
-    if (!fs::exists(file)) continue;
-    require_plain(file);
-    std::ifstream stream(file, std::ios::binary);
-    texts.back().text = std::string(std::istreambuf_iterator<char>(stream), {});
-  }
+  for (const char* name : {"preprocess", "solve"})
+    texts.push_back({name, text_if_there(context.out / (std::string(name) + ".used.toml"))});
   texts.push_back({"postprocess", used});
   return texts;
 }

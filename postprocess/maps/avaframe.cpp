@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 
@@ -86,9 +85,7 @@ char size_letter(double volume) { return volume < 25e3 ? 'S' : volume < 60e3 ? '
 
 std::string settings_text(const Run& run, const fs::path& run_file) {
   std::string text;
-  require_plain(run_file.parent_path() / "solve.used.toml");
-  std::ifstream stream(run_file.parent_path() / "solve.used.toml");
-  std::string whole(std::istreambuf_iterator<char>(stream), {});
+  const std::string whole = text_if_there(run_file.parent_path() / "solve.used.toml").value_or("");
   std::istringstream used(is_used_recipe_of(whole, fact(run.summary.provenance, run_id)) ? whole : "");
   for (std::string line; std::getline(used, line);) {
     if (!line.empty() && line[0] != '#') text += line + "\n";

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/survey/found_survey.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/stage/input_file.hpp"
 
@@ -17,9 +17,8 @@ std::filesystem::path file_in(const std::filesystem::path& out) { return out / "
 
 /// The file, null where there is none, discarded where it is no JSON.
 Json read_json(const std::filesystem::path& out) {
-  require_plain(file_in(out));
-  std::ifstream stream(file_in(out));
-  return stream ? Json::parse(stream, nullptr, false) : Json(nullptr);
+  const std::optional<std::string> text = text_if_there(file_in(out));
+  return text ? Json::parse(*text, nullptr, false) : Json(nullptr);
 }
 
 Json table(const Json& in, const char* key) {

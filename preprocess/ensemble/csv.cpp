@@ -5,15 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <system_error>
 
 #include "common/error.hpp"
+#include "common/stage/input_file.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -27,23 +25,11 @@ using Row = std::vector<CsvField>;
   throw DataError(Fault{fmt::format("{}:{}:{}: {}", file.string(), at.line, at.column, what), why, mend});
 }
 
-std::string whole_text(const fs::path& file) {
-  const auto refuse = [&](const std::string& reason) {
+/// The table without the mark of its byte order.
+std::string text_of(const fs::path& file) {
+  std::string text = whole_text(file, std::uintmax_t{64} << 20, [&](const std::string& reason) {
     throw DataError(Fault{file.string() + ": the table cannot be read", reason, "Check the path"});
-  };
-  if (fs::is_directory(file)) refuse("it is a folder");
-  constexpr std::uintmax_t most = 64u << 20;
-  std::error_code unknown;
-  if (const auto size = fs::file_size(file, unknown); !unknown && size > most) refuse("it is longer than 64 MB");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  try {
-    text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-  } catch (const std::ios_base::failure&) {  // the disk fails under the stream
-    refuse(std::generic_category().message(errno));
-  }
-  if (!stream) refuse(std::generic_category().message(errno));
+  });
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
@@ -145,7 +131,7 @@ std::optional<double> number_of(const std::string& text) {
 }  // namespace
 
 std::vector<Row> read_csv(const fs::path& file) {
-  const std::string text = whole_text(file);
+  const std::string text = text_of(file);
   CsvWalk walk(file, text);
   std::vector<Row> rows;
   while (auto row = walk.next()) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "common/run/run_facts.hpp"
 #include "common/run/trusted_file.hpp"
 #include "common/stage/console.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/interrupt.hpp"
 #include "solver/budget/own_changes.hpp"
 #include "solver/budget/run_variations.hpp"
@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 
 /// Why talus-preprocess could not make a domain; empty where it says nothing.
 std::string why_not_made(const BudgetPaths& paths, const std::string& name) {
-  std::ifstream told(paths.domains());
+  std::istringstream told(text_if_there(paths.domains()).value_or(""));
   const std::string mark = name + ": left out: ";
   for (std::string line; std::getline(told, line);)
     if (line.starts_with(mark)) return line.substr(mark.size());

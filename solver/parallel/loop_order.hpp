@@ -14,6 +14,13 @@
 
 namespace talus::detail {
 
+/// True where the thread sanitizer watches. It would take each hand-over inside oneTBB's own sort for a race.
+#ifdef __SANITIZE_THREAD__
+inline constexpr bool under_thread_sanitizer = true;
+#else
+inline constexpr bool under_thread_sanitizer = false;
+#endif
+
 /// Lives as long as a loop, on the thread that calls it. Costs nothing without the sanitizer.
 class LoopOrder {
  public:

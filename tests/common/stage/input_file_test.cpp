@@ -33,5 +33,23 @@ TEST(InputFile, that_fails_is_refused_before_GDAL_looks_for_the_end_of_its_cells
   EXPECT_NE(test::fault_of<DataError>([] { glance_at_raster(failing); }).find("cannot be read"), std::string::npos);
 }
 
+TEST(InputFile, text_counts_as_missing_only_where_it_is_not_there) {
+  const test::Scratch scratch;
+  const std::string long_text(200'000, 'x');
+  EXPECT_EQ(text_if_there(scratch.write("long.txt", long_text)), long_text);
+  EXPECT_EQ(text_if_there(scratch.write("empty.txt", "")), "");
+  EXPECT_EQ(text_if_there(scratch / "none.txt"), std::nullopt);
+  EXPECT_NE(test::fault_of<DataError>([] { text_if_there(failing); }).find("cannot be read (Input/output error)"),
+            std::string::npos);
+  EXPECT_NE(test::fault_of<DataError>([&] { text_if_there(scratch.folder()); }).find("it is a folder"),
+            std::string::npos);
+}
+
+TEST(InputFile, text_without_end_is_given_up) {
+  const auto refuse = [](const std::string& reason) { throw DataError({"text", reason, "mend"}); };
+  const std::string fault = test::fault_of<DataError>([&] { whole_text("/dev/zero", 1 << 20, refuse); });
+  EXPECT_NE(fault.find("it is longer than 1 MB"), std::string::npos) << fault;
+}
+
 }  // namespace
 }  // namespace talus
