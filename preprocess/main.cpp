@@ -24,9 +24,6 @@ namespace {
 
 using namespace talus;
 
-constexpr double bytes_per_point =
-    400;  // state of one material point in the solver, double precision, with its sorting
-
 void report(const preprocess::Prepared& prepared) {
   const MapGrid& grid = prepared.domain.grid;
   log_info(fmt::format("working grid: {} x {} cells of {:g} m, layers of {:g} m, {}", grid.columns, grid.rows,
@@ -50,7 +47,7 @@ void report(const preprocess::Prepared& prepared) {
   for (const std::string& line : preprocess::as_lines(whole, prepared.total)) log_info(line);
   const double count = static_cast<double>(prepared.point_count);
   log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", grouped(count),
-                       std::max(1.0, count * bytes_per_point * 1e-6)));
+                       std::max(1.0, count * preprocess::solver_bytes_per_point * 1e-6)));
 }
 
 /// What the command line says beyond what every stage takes.

@@ -298,6 +298,8 @@ def judged(args, folder, changes):
         code, said = run([str(word) for word in command], args.time, folder / f"{stage}.log")
         if code == "stopped":
             work, steps = announced_work(said)
+            if stage == "preprocess" and "to make so many takes long" in said:
+                return "stopped", "many material points were announced"
             text = (folder / "recipe.toml").read_text()
             implicit = "integrator" in text or "factor_of_safety = true" in text
             if stage != "solve" or not (implicit or work > 1000 * 128):

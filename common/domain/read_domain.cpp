@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <new>
 
 #include "common/domain/check_domain.hpp"
 #include "common/domain/domain.hpp"
@@ -57,6 +58,8 @@ Contents read_all(const fs::path& file) {
   } catch (const std::ios_base::failure&) {
     require_read(stream, file);
     refuse(file, "ends too early", "the file is truncated: its writing or copying was cut short", again);
+  } catch (const std::bad_alloc&) {  // of a sealed file: one without a seal is read in a child, which says so itself
+    throw;
   } catch (const std::exception& error) {  // OpenVDB throws its own and std:: kinds on bytes that make no sense
     refuse(file, "cannot be read", std::string("the file is damaged: ") + error.what(), again);
   }

@@ -89,6 +89,7 @@ PendingFile::~PendingFile() {
   if (committed_) return;
   std::error_code ignored;
   fs::remove(partial_, ignored);
+  fs::remove(partial_.string() + ".aux.xml", ignored);  // what GDAL leaves beside a file that it could not finish
   spare(partial_);
 }
 

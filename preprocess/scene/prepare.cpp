@@ -131,17 +131,25 @@ void warn_at_edge(const Raster& thickness) {
   }
 }
 
-void require_countable(std::size_t count, const GridOptions& grid) {
+/// Refuses more points than can be numbered or held, and warns of so many that they take long.
+void judge_count(std::size_t points, const GridOptions& grid) {
   constexpr double bytes_per_seed = 64;  // places, volume, extents, release
+  constexpr double many = 1e7;
+  const auto count = static_cast<double>(points);
   const bool dense = grid.points_per_cell[0] * grid.points_per_cell[1] * grid.points_per_cell[2] > 1;
   const std::string mend =
       "Take a larger layer_height_m or spacing_m" +
       (dense ? fmt::format(", or fewer points_per_cell than [{}]", fmt::join(grid.points_per_cell, ", "))
              : std::string());
-  const std::string what = fmt::format("[preprocess.grid]: {} material points", grouped(static_cast<double>(count)));
-  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+  const std::string what = fmt::format("[preprocess.grid]: {} material points", grouped(count));
+  if (points > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw RecipeError(Fault{what, "points are numbered in 32 bits", mend});
-  require_memory(bytes_per_seed * static_cast<double>(count), what, mend);
+  require_memory(bytes_per_seed * count, what, mend);
+  if (count > many)
+    log_warning(to_string(Fault{what,
+                                fmt::format("to make so many takes long, and the solver needs about {:.0f} GB for them",
+                                            count * solver_bytes_per_point * 1e-9),
+                                mend}));
 }
 
 }  // namespace
@@ -187,7 +195,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   prepared.inputs = inputs_of(options);
   const bool laboratory = options.way() == Way::laboratory;
   prepared.point_count = laboratory ? count_box_points(options) : count_points(scene.releases, seeding);
-  require_countable(prepared.point_count, options.grid);
+  judge_count(prepared.point_count, options.grid);
   if (!laboratory) {
     prepared.coarse =
         too_coarse(prepared.domain.release_thickness, seeding.layer_height, prepared.point_count, options.grid)

@@ -17,6 +17,9 @@
 
 namespace talus::preprocess {
 
+/// Memory that the solver takes for a material point, in double precision, with its sorting [bytes].
+inline constexpr double solver_bytes_per_point = 400;
+
 /// The domain, with its volumes and all that is written beside it.
 struct Prepared {
   Domain domain;  // without points where only counted; provenance is left to the caller

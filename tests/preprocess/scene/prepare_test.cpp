@@ -309,5 +309,15 @@ TEST(prepare, refuses_more_points_than_can_be_numbered) {
             std::string::npos);
 }
 
+TEST(prepare, warns_of_more_points_than_anybody_waits_for) {
+  Scene scene;
+  scene.options.grid.layer_height = 3e-4;
+  testing::internal::CaptureStderr();
+  prepare(scene.options, Points::counted);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("material points (to make so many takes long, and the solver needs about"), std::string::npos)
+      << said;
+}
+
 }  // namespace
 }  // namespace talus::preprocess
