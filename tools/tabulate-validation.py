@@ -8,7 +8,9 @@ Several files hold cases of their own, made at one commit; files of different co
 """
 import json
 import pathlib
+import re
 import sys
+import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -55,7 +57,7 @@ def read(files):
 def heading(sittings, rows):
     """When and with what the rows were made, and how many there are of each kind."""
     days = sorted({s["date"] for s in sittings})
-    places = sorted({r["place"] for r in rows if r["place"]})
+    places = sorted({re.sub(r", \d+ threads?$", "", r["place"]) for r in rows if r["place"]})
     kind = ("with the long runs" if all(s["complete"] for s in sittings) else
             "on coarse grids" if all(s["coarse"] for s in sittings) else
             "the quick runs" if not any(s["complete"] or s["coarse"] for s in sittings) else "some with the long runs")
@@ -64,7 +66,8 @@ def heading(sittings, rows):
     noted = [r for r in rows if not r["judged"]]
     lost = [r for r in noted if "fault" in r]
     words = [f"Commit {sittings[0]['commit']}, {' and '.join(days)}, {kind}, on {'; '.join(places) or 'nothing'}.", "",
-             f"Cases: {', '.join(case for s in sittings for case in s['cases'])}.", "",
+             *textwrap.wrap(f"Cases: {', '.join(case for s in sittings for case in s['cases'])}.", 120,
+                            break_on_hyphens=False), "",
              f"{len(rows)} rows: {len(judged)} are judged, {len(missed)} of these miss their tolerance; "
              f"{len(noted)} are noted",
              f"and claim nothing, {len(lost)} of these without a result. Cases and what they mean:",

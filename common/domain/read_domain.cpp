@@ -4,10 +4,12 @@
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
 
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <new>
+#include <system_error>
 
 #include "common/domain/check_domain.hpp"
 #include "common/domain/domain.hpp"
@@ -41,9 +43,11 @@ struct Contents {
 Contents read_all(const fs::path& file) {
   if (!fs::exists(file)) refuse(file, "no such file", "", "Run talus-preprocess first, with the same --out");
   require_plain(file);
+  if (fs::is_directory(file)) refuse(file, "cannot be read", "it is a folder", "Check the path");
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || fs::is_directory(file))
-    refuse(file, "cannot be read", fs::is_directory(file) ? "it is a folder" : "no permission", "Check the path");
+  if (!stream && errno == ENOMEM) throw std::bad_alloc();
+  if (!stream) refuse(file, "cannot be read", std::generic_category().message(errno), "Check the path");
   char magic[8] = {};
   stream.read(magic, sizeof magic);
   constexpr char of_openvdb[8] = {0x20, 0x42, 0x44, 0x56, 0, 0, 0, 0};
