@@ -11,7 +11,7 @@
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/shown_paths.hpp"
 #include "common/recipe/suggest.hpp"
-#include "common/stage/input_file.hpp"
+#include "common/whole_text.hpp"
 
 namespace talus::recipe {
 namespace fs = std::filesystem;

@@ -2,14 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/stage/input_file.hpp"
 
-#include <fmt/format.h>
-
 #include <cerrno>
-#include <fstream>
 #include <system_error>
-#include <vector>
 
 #include "common/stage/write_fault.hpp"
+#include "common/whole_text.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -40,24 +37,6 @@ void require_read(const std::ios& stream, const fs::path& file) {
   if (stream.bad())
     refuse_file(file, "cannot be read to its end", std::generic_category().message(errno),
                 "Look at the disk, or copy the file again");
-}
-
-std::string whole_text(const fs::path& file, std::uintmax_t most,
-                       const std::function<void(const std::string& reason)>& refuse) {
-  std::error_code unknown;
-  if (fs::is_directory(file, unknown)) refuse("it is a folder");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse(std::generic_category().message(errno));
-  std::string text;
-  std::vector<char> part(std::size_t{1} << 16);
-  while (stream && text.size() <= most) {  // a device would never end
-    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
-    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) refuse(std::generic_category().message(errno));
-  if (text.size() > most) refuse(fmt::format("it is longer than {} MB", most >> 20));
-  return text;
 }
 
 std::optional<std::string> text_if_there(const fs::path& file) {

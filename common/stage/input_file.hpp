@@ -3,9 +3,7 @@
 // What an input must be to be opened at all, and texts that are read whole.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <ios>
 #include <optional>
 #include <string>
@@ -18,11 +16,6 @@ void require_plain(const std::filesystem::path& file);
 
 /// Throws DataError where a reading of `stream` has failed: it ends what is read as the end of the file does.
 void require_read(const std::ios& stream, const std::filesystem::path& file);
-
-/// All bytes of `file`, which may be a pipe. `refuse` is called with the reason, and must throw, where it is a folder
-/// or longer than `most` bytes, and where it cannot be opened or read to its end.
-std::string whole_text(const std::filesystem::path& file, std::uintmax_t most,
-                       const std::function<void(const std::string& reason)>& refuse);
 
 /// All bytes of a plain file that a stage wrote; none where it is not there. Throws DataError where it is there and
 /// cannot be read, or is longer than 64 MB.

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "common/error.hpp"
-#include "common/stage/input_file.hpp"
+#include "common/whole_text.hpp"
 
 namespace talus::preprocess {
 namespace {

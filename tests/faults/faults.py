@@ -216,7 +216,7 @@ def readings(bench):
 
 
 def allocations(bench):
-    """The n-th allocation fails. Libraries that do not look end the process; no file may suffer, and no member fails."""
+    """The n-th allocation fails. Libraries that do not look end the process; no file may suffer, no member fail."""
     for stage in bench.stages:
         fresh_copy(bench.base[stage], bench.place)
         bench.run(stage, alloc=10 ** 12)

@@ -45,11 +45,5 @@ TEST(InputFile, text_counts_as_missing_only_where_it_is_not_there) {
             std::string::npos);
 }
 
-TEST(InputFile, text_without_end_is_given_up) {
-  const auto refuse = [](const std::string& reason) { throw DataError({"text", reason, "mend"}); };
-  const std::string fault = test::fault_of<DataError>([&] { whole_text("/dev/zero", 1 << 20, refuse); });
-  EXPECT_NE(fault.find("it is longer than 1 MB"), std::string::npos) << fault;
-}
-
 }  // namespace
 }  // namespace talus
