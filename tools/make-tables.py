@@ -82,9 +82,8 @@ def validated(cases):
         met = sum(row[4] for row in mine)
         lines.append(f"| {case}: {CASES[case][0]} | {CASES[case][1]} | {met} of {len(mine)} | "
                      f"{percent(errors[len(errors) // 2])} | {percent(errors[-1])} |")
-    return [*lines, "", f"Commit {commit[:7]}, {day}, on {place.partition(',')[0]} and {place.rpartition('; ')[2]}, by "
-            "`make validate LONG=1`. The",
-            "error of a quantity that must lie in a band is its distance from the band."]
+    return [*lines, "", f"Commit {commit[:7]}, {day}, on {' and '.join(place.split('; '))}, by",
+            "`make validate LONG=1`. The error of a quantity that must lie in a band is its distance from the band."]
 
 
 def speed():
