@@ -131,6 +131,25 @@ void warn_at_edge(const Raster& thickness) {
   }
 }
 
+/// The releases by name, with the volume of each and of all.
+void add_volumes(const SceneRasters& scene, Prepared& prepared) {
+  const std::vector<double> cosine = slope_cosine(scene.bed);
+  prepared.total = volumes_of(prepared.domain.release_thickness, cosine);
+  for (const Release& release : scene.releases) {
+    prepared.domain.release_names.push_back(release.name);
+    prepared.by_release.emplace_back(release.name, volumes_of(release.thickness, cosine));
+  }
+}
+
+/// The bodies that stand on the ground, and how finely they are written: the smallest voxel that one of them asks for.
+void add_obstacles(const Options& options, const Raster& bed, Prepared& prepared) {
+  const Domain& domain = prepared.domain;
+  prepared.obstacles = upright_obstacles(options.obstacle, bed, 2 * domain.layer_height);
+  prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
+  for (const ObstacleOptions& o : options.obstacle)
+    if (o.voxel > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel);
+}
+
 /// Refuses more points than can be numbered or held, and warns of so many that they take long.
 void judge_count(std::size_t points, const GridOptions& grid) {
   constexpr double bytes_per_seed = 64;  // places, volume, extents, release
@@ -207,12 +226,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   domain.grid = scene.bed.grid;
   domain.layer_height = seeding.layer_height;
   warn_at_edge(domain.release_thickness);
-  const std::vector<double> cosine = slope_cosine(scene.bed);
-  prepared.total = volumes_of(domain.release_thickness, cosine);
-  for (const Release& release : scene.releases) {
-    domain.release_names.push_back(release.name);
-    prepared.by_release.emplace_back(release.name, volumes_of(release.thickness, cosine));
-  }
+  add_volumes(scene, prepared);
   stop_if_interrupted("preparing the domain");
   if (points == Points::seeded) {
     domain.points = laboratory ? points_of_boxes(options) : seed_points(scene.releases, seeding);
@@ -221,11 +235,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   domain.bed = read_bed(options, domain.grid);
   if (!options.bed.polygons.empty()) lay_bed_polygons(options.bed.polygons, scene.bed, domain.bed);
   lay_bed_zones(options.bed, scene.bed, prepared.total.volume, domain.bed);
-  prepared.obstacles = upright_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
-  prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
-  for (const ObstacleOptions& o : options.obstacle) {
-    if (o.voxel > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel);
-  }
+  add_obstacles(options, scene.bed, prepared);
   domain.places = read_places(options.place, scene.bed);
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);
