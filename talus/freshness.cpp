@@ -39,7 +39,7 @@ std::string other_mark(const recipe::Recipe& recipe, const char* table, const Fa
 
 /// What domain, and members of an ensemble, say of the recipe that made them.
 std::string other_members(const Request& request, const recipe::Recipe& recipe, const fs::path& domain) {
-  const std::string other = other_mark(recipe, "preprocess", domain_facts(domain), recipe_of_domain);
+  std::string other = other_mark(recipe, "preprocess", domain_facts(domain), recipe_of_domain);
   const fs::path members = EnsemblePaths{request.out}.members();
   if (!other.empty() || !ensemble_of(recipe).on() || !fs::exists(members)) return other;
   const std::string why =
