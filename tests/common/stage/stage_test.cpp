@@ -47,8 +47,13 @@ TEST(PendingFile, shows_nothing_until_committed) {
 TEST(PendingFile, keeps_the_old_file_when_the_new_one_is_given_up) {
   const Scratch scratch;
   scratch.write("map.tif", "old");
-  { std::ofstream(PendingFile(scratch / "map.tif").path()) << "half"; }
+  {
+    const PendingFile given_up(scratch / "map.tif");
+    std::ofstream(given_up.path()) << "half";
+    std::ofstream(given_up.path().string() + ".aux.xml") << "what GDAL leaves beside it";
+  }
   EXPECT_EQ(text_of(scratch / "map.tif"), "old");
+  EXPECT_EQ(scratch.files(), 1u);
   PendingFile pending(scratch / "map.tif");
   std::ofstream(pending.path()) << "new";
   pending.commit();
