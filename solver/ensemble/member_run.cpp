@@ -24,7 +24,7 @@ struct GivenUp {};
 class MemberKeeper : public RunKeeper {
  public:
   void put_frame(double, std::int64_t) override {}
-  void pass_sort(bool) override {}
+  void pass_whole_state(bool) override {}
   void pass_batch(const BatchReport&) override {
     if (interrupted()) throw GivenUp{};
   }

@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <type_traits>
+#include <vector>
 
 #include "solver/explicit/column_contact.hpp"
 #include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/explicit/solve_columns.hpp"
 #include "solver/explicit/update_columns.hpp"
+#include "solver/integrator/at_home.hpp"
 #include "solver/integrator/point_solver.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/parallel/algorithms.hpp"
@@ -38,16 +41,6 @@ int steps_between_sorts_on_gpu(int points) {
 }
 /// The steps between sorts on a CPU: in places of memory that lie apart, steps become slower.
 inline constexpr int cpu_steps_between_sorts = 32;
-/// Points times steps between sorts on a CPU: two cores take a second for them. The state can be saved at a sort alone,
-/// and a signal waits for that.
-inline constexpr int cpu_work_between_sorts = 4'000'000;
-/// The fewest steps between sorts on a CPU: a sort takes as long as 0.4 steps.
-inline constexpr int fewest_cpu_steps_between_sorts = 8;
-/// The steps between sorts on a CPU for a number of points.
-inline int steps_between_sorts_on_cpu(int points) {
-  return std::clamp(cpu_work_between_sorts / std::max(points, 1), fewest_cpu_steps_between_sorts,
-                    cpu_steps_between_sorts);
-}
 /// The way that points may go before they are sorted: a sort takes as long as a dozen steps of a small scene, and more
 /// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one.
 template <class Device>
@@ -102,11 +95,18 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     Clock clock = clock_.read();
     clock.accelerated = 0;
     clock.steps_between_sorts = steps_between_sorts();
+    if (state.homes.empty()) clock.outflow_volume = clock.outflow_count = 0;  // a sort drops those who have left
     clock_.write(clock);
-    sort(0);
+    if (Device::is_gpu || state.homes.empty()) {
+      sort(0);
+    } else {
+      points_.upload(at_home(state, scene.grid.columns));
+      sort(0);
+      points_.upload(state.points);
+    }
   }
 
-  /// The method makes a batch of steps on the device; see Solver::advance().
+  /// The method makes a batch of steps on the device, or one step on a CPU; see Solver::advance().
   BatchReport advance() override {
     Clock clock = clock_.read();
     clock.halt = clock.request = running;
@@ -142,9 +142,20 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       report.sorted = true;
     }
     clock_.write(clock);
+    report.can_be_saved = report.sorted || !Device::is_gpu;
     report.clock = clock;
     report.clock.halt = halt;
     return report;
+  }
+
+  /// All that a checkpoint keeps. On a CPU that is enough to go on between two sorts; see Solver::state().
+  SolverState state() const override {
+    SolverState now = Base::state();
+    if (!Device::is_gpu && now.clock.steps_since_sort > 0) {
+      const std::vector<std::uint64_t> keys = grid_.homes();  // of those who left at the sort as well, last
+      now.homes.assign(keys.begin(), keys.begin() + points_.count());
+    }
+    return now;
   }
 
   /// The method adds points; see Solver::add().
@@ -175,7 +186,9 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
 
   /// The steps to start at once: as many as lead to the next event at their length now, or lay between the last two
   /// sorts, and then a few at a time. What is started after the clock has halted does nothing but take its time.
+  /// On a CPU each step is waited for, and a signal heard after it.
   int steps_ahead(const Clock& clock) const {
+    if constexpr (!Device::is_gpu) return 1;
     constexpr int few = 2;
     const int to_sort =
         std::min(std::max(expected_ - clock.steps_since_sort, few), clock.steps_between_sorts - clock.steps_since_sort);
@@ -186,7 +199,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// The steps until the next sort, for the points there are.
   int steps_between_sorts() const {
     if constexpr (Device::is_gpu) return steps_between_sorts_on_gpu<Shape>(points_.count());
-    return steps_between_sorts_on_cpu(points_.count());
+    return cpu_steps_between_sorts;
   }
 
   /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.

@@ -19,7 +19,8 @@ struct ForgetExtents {
   }
 };
 
-/// A point reaches a column and a layer beyond the way it may go before the next sort: that of its stencil.
+/// A point reaches a column and a layer beyond the way it may go before the next sort: that of its stencil. One that
+/// has left the domain reaches nothing.
 template <class Real>
 struct MeasureExtents {
   ParticleView<Real> points;
@@ -29,6 +30,7 @@ struct MeasureExtents {
   int* highest;
   TALUS_HD void operator()(int p) const {
     const int i = points.cell[0][p], j = points.cell[1][p], k = points.cell[2][p];
+    if (i < 0) return;
     const int around = reach.columns;
     const int i0 = i > around ? i - around : 0, i1 = i + around < columns ? i + around : columns - 1;
     const int j0 = j > around ? j - around : 0, j1 = j + around < rows ? j + around : rows - 1;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "solver/parallel/for_each.hpp"
 #include "solver/state/grid_view.hpp"
@@ -32,6 +33,8 @@ class ParticleOrder {
   bool by_lowest_node() const { return by_lowest_node_; }
   /// The keys of the cells that the points were sorted by (home_key()), [points] on the device.
   const std::uint64_t* home() const { return keys_.data(); }
+  /// The same keys on the host; waits for the device.
+  std::vector<std::uint64_t> homes() const { return keys_.download(); }
   /// The ranges of points by column block and colour.
   const PointGroups& groups() const { return groups_; }
   /// The size of keys and order [bytes].

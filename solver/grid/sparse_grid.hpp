@@ -3,6 +3,8 @@
 // Owner of the background grid: terrain, storage of the columns that hold material, points sorted by column block.
 #pragma once
 
+#include <vector>
+
 #include "solver/grid/block_storage.hpp"
 #include "solver/grid/device_terrain.hpp"
 #include "solver/grid/particle_order.hpp"
@@ -44,6 +46,8 @@ class SparseGrid {
   const GridShape& shape() const { return shape_; }
   /// The keys of the cells that the points were sorted by (home_key()), [points] on the device.
   const std::uint64_t* home() const { return order_.home(); }
+  /// The same keys on the host; waits for the device.
+  std::vector<std::uint64_t> homes() const { return order_.homes(); }
   /// The ranges of points by column block and colour.
   const PointGroups& groups() const { return order_.groups(); }
   /// The number of stored nodes.

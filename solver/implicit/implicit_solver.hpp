@@ -42,8 +42,6 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   BatchReport advance() override {
     Clock clock = clock_.read();
     clock.halt = clock.request = running;
-    clock.outflow_count = 0;
-    clock.outflow_volume = 0;
     clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
     clock.rate_bits = clock.speed_bits = 0;
     if (loads_.jump_at(clock.time)) clock.accelerated = 0;
@@ -52,7 +50,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     BatchReport report;
     const double step = solve_step(clock, report.stats);
     if (!(step > 0)) {
-      report.sorted = true;
+      report.sorted = report.can_be_saved = true;
       report.clock = clock;
       report.stats = {};
       return report;
@@ -200,7 +198,9 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     // What is looked at between steps, by cell and column, finds the points sorted.
     if (report.outflow_count > 0 || clock.halt == at_event) this->fit(report.outflow_count);
     if (clock.halt == at_event) record_points();
-    report.sorted = true;
+    report.sorted = report.can_be_saved = true;
+    clock.outflow_count = 0;  // reported
+    clock.outflow_volume = 0;
     report.clock = clock;
     clock.halt = clock.request = running;
     clock_.write(clock);

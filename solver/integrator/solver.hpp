@@ -37,6 +37,7 @@ struct Packing {
 /// The state that a checkpoint keeps.
 struct SolverState {
   ParticleState points;
+  std::vector<std::int64_t> homes = {};  ///< of points that have gone on since they were sorted: home_key(), or empty
   Clock clock;
   RunningMaps<std::vector<double>> maps;
   ContactState contacts;
@@ -54,7 +55,8 @@ struct StepStats {
 /// The outcome of a batch of steps.
 struct BatchReport {
   Clock clock;
-  bool sorted = false;        ///< the points have just been sorted: a checkpoint may be taken here
+  bool sorted = false;        ///< the points have just been sorted
+  bool can_be_saved = false;  ///< a run that goes on from state() as it is now ends with the same bits
   double outflow_volume = 0;  ///< left the domain in this batch [m3]
   int outflow_count = 0;
   StepStats stats;  ///< implicit: of the step
@@ -76,7 +78,7 @@ class Solver {
   virtual void add(const ParticleState& points, double rate) = 0;
   /// The clock of the end of the last step.
   virtual Clock clock() const = 0;
-  /// All that a checkpoint keeps.
+  /// All that a checkpoint keeps; what a run may go on from where BatchReport::can_be_saved.
   virtual SolverState state() const = 0;
   /// The points as frames show them: without affine velocity, acceleration, boxes and loads, whose lists are empty.
   virtual ParticleState shown() const = 0;

@@ -53,11 +53,10 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
   while (stepper_.time() < schedule_.end_time()) {
     const BatchReport batch = stepper_.advance(schedule_.next_event(stepper_.time(), memory_));
     count(batch);
-    if (batch.sorted) pass_sort(keeper);
+    bool can_be_saved = batch.can_be_saved;
     if (batch.clock.halt == at_event) {
-      const bool entered = let_in(stepper_.time());
+      if (let_in(stepper_.time())) can_be_saved = true;  // what enters is sorted with the others
       pass_events(stepper_.time(), keeper);
-      if (entered) pass_sort(keeper);  // where pulses come often, nothing else asks for a sort
     }
     keeper.pass_batch(batch);
     if (calm()) {
@@ -68,6 +67,7 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
       reason = "all material left the domain";
       break;
     }
+    if (can_be_saved) pass_whole_state(keeper);
   }
   if (schedule_.ends_between_frames(stepper_.time(), memory_)) put_frame(stepper_.time(), keeper);
   return reason;
@@ -85,10 +85,10 @@ bool RunLoop::let_in(double time) {
   return memory_.pulses > before;
 }
 
-void RunLoop::pass_sort(RunKeeper& keeper) {
+void RunLoop::pass_whole_state(RunKeeper& keeper) {
   const bool due = schedule_.checkpoint_due(stepper_.time(), memory_);
   if (due) ++memory_.checkpoints;
-  keeper.pass_sort(due);
+  keeper.pass_whole_state(due);
 }
 
 bool RunLoop::left_empty() const {

@@ -39,11 +39,11 @@ class RunKeeper {
   virtual ~RunKeeper() = default;
   /// A frame is due at `time` [s], the `number`th from 0.
   virtual void put_frame(double time, std::int64_t number) = 0;
-  /// The points have just been sorted: their state may be written down, and the run stopped by an exception.
-  /// `checkpoint_due`: the recipe asks for a checkpoint here.
-  virtual void pass_sort(bool checkpoint_due) = 0;
   /// A batch of steps has been taken.
   virtual void pass_batch(const BatchReport& batch) = 0;
+  /// There are more steps to take, and a run can go on from the state as it is: it may be written down, and the run
+  /// stopped by an exception. `checkpoint_due`: the recipe asks for a checkpoint here.
+  virtual void pass_whole_state(bool checkpoint_due) = 0;
 };
 
 /// The loop of a run, and the numbers that it records. Two loops of the same domain and options take the same steps,
@@ -80,7 +80,7 @@ class RunLoop {
 
  private:
   bool let_in(double time);
-  void pass_sort(RunKeeper& keeper);
+  void pass_whole_state(RunKeeper& keeper);
   bool left_empty() const;
   void count(const BatchReport& batch);
   void pass_events(double time, RunKeeper& keeper);

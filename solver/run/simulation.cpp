@@ -82,8 +82,7 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title, c
 
 void Simulation::put_frame(double time, std::int64_t number) { frames_.put(time, number, loop_.stepper().solver()); }
 
-/// The method stops or saves where it must; points can be written down only after a sort.
-void Simulation::pass_sort(bool checkpoint_due) {
+void Simulation::pass_whole_state(bool checkpoint_due) {
   const bool stopped = interrupted();
   if (checkpoint_due || stopped) save_checkpoint();
   if (stopped) stop();

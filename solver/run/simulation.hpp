@@ -57,8 +57,8 @@ class Simulation : private RunKeeper {
 
  private:
   void put_frame(double time, std::int64_t number) override;
-  void pass_sort(bool checkpoint_due) override;
   void pass_batch(const BatchReport& batch) override;
+  void pass_whole_state(bool checkpoint_due) override;
   void start();
   void stop_if_interrupted_at_the_end();
   [[noreturn]] void stop();

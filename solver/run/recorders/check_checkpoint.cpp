@@ -3,12 +3,14 @@
 #include "solver/run/recorders/check_checkpoint.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "common/stage/write_fault.hpp"
+#include "solver/state/grid_view.hpp"
 
 namespace talus::solver {
 namespace {
@@ -48,12 +50,32 @@ double largest(const std::vector<int>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
-void check_points(const Fits& fits, const ParticleState& points, std::int64_t pulses, const Scene& scene) {
+/// Homes are in the order of the sort, and no point has gone further from its own than a step may begin with.
+void check_homes(const Fits& fits, const SolverState& state, const Scene& scene) {
+  const std::vector<std::int64_t>& homes = state.homes;
+  if (!std::is_sorted(homes.begin(), homes.end())) fits.refuse("its points are not in the order of their homes");
+  const ParticleState& points = state.points;
+  for (std::size_t p = 0; p < homes.size(); ++p) {
+    const HomeCell home(blocks_across(scene.grid.columns), static_cast<std::uint64_t>(homes[p]));
+    const int cell[3] = {points.cell[0][p], points.cell[1][p], points.cell[2][p]};
+    const bool here = cell[0] < 0 || (std::abs(cell[0] - home.i) <= 1 && std::abs(cell[1] - home.j) <= 1 &&
+                                      std::abs(cell[2] - home.k) <= 1);
+    if (homes[p] < 0 || home.i >= scene.grid.columns || home.j >= scene.grid.rows || !here)
+      fits.refuse(fmt::format("home of point {} is cell {}, {}, {}; the point is in {}, {}, {}", p, home.i, home.j,
+                              home.k, cell[0], cell[1], cell[2]));
+  }
+}
+
+void check_points(const Fits& fits, const SolverState& state, std::int64_t pulses, const Scene& scene) {
+  const ParticleState& points = state.points;
   constexpr double most_layers = 1 << 20, tiny = std::numeric_limits<double>::min();
   const std::size_t seeded = scene.points.size() + scene.inflow.points_in(pulses);
   if (points.size() > seeded)
     fits.refuse(fmt::format("it holds {} points, of which the scene has {}", points.size(), seeded));
-  fits.within("cell_0", points.cell[0], 0, scene.grid.columns - 1);
+  fits.within("cell_0", points.cell[0], -1, scene.grid.columns - 1);
+  const auto left = std::count(points.cell[0].begin(), points.cell[0].end(), -1);
+  const int counted = state.homes.empty() ? 0 : state.clock.outflow_count;  // a sort drops those who have left
+  if (left != counted) fits.refuse(fmt::format("{} of its points are outside, and its clock counts {}", left, counted));
   fits.within("cell_1", points.cell[1], 0, scene.grid.rows - 1);
   fits.within("cell_2", points.cell[2], 0, most_layers);
   for (const auto& offset : points.offset) fits.within("offset", offset, -0.5001, 0.5001);  // single precision rounds
@@ -74,7 +96,8 @@ void check_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   if (pulses < 0 || pulses > std::ssize(scene.inflow.pulses))
     fits.refuse(fmt::format("{} pulses of inflows have entered, of which the scene has {}", pulses,
                             scene.inflow.pulses.size()));
-  check_points(fits, checkpoint.state.points, pulses, scene);
+  check_points(fits, checkpoint.state, pulses, scene);
+  check_homes(fits, checkpoint.state, scene);
   const std::size_t cells = scene.map.count();
   for_each_running_map([&](const RunningMap& map, const auto& values) { fits.length(map.name, values.size(), cells); },
                        checkpoint.state.maps);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/run/recorders/checkpoint.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <type_traits>
 #include <utility>
 
@@ -18,11 +20,13 @@ namespace talus::solver {
 namespace {
 
 // Raised when a reader of today would misread the file or miss something in it; the kind before is read as well
-// (docs/reference/formats.md). 6: sealed (common/stage/checksum.hpp), with the way since maps were recorded. 5: without
-// either.
-constexpr const char* kind = "talus checkpoint 6";
-constexpr const char* kind_before = "talus checkpoint 5";
+// (docs/reference/formats.md). 7: fields of the points that are not needed by every run may lack, and points may be
+// between two sorts. 6: without either.
+constexpr const char* kind = "talus checkpoint 7";
+constexpr const char* kind_before = "talus checkpoint 6";
 constexpr const char* any_kind = "talus checkpoint ";
+constexpr const char* points_group = "/points";
+constexpr const char* homes = "/points/home";  // only there where steps were taken since points were sorted
 constexpr const char* mend = "Run talus-solve again without --restart";
 
 /// Calls item(name, list) for every list of the points, so that writing and reading cannot differ.
@@ -45,10 +49,9 @@ void visit_contacts(Contacts& c, Item&& item) {
   item("impulse", c.impulse);
 }
 
-/// Visits all that a checkpoint holds beside its history, group by group: items(group) is the visitor of one group.
+/// Visits all that a checkpoint holds beside points and history, group by group: items(group) is the visitor of one.
 template <class AnyCheckpoint, class Items>
 void visit(AnyCheckpoint& c, Items&& items) {
-  visit_points(c.state.points, items("/points"));
   visit_maps(c.state.maps, items("/maps"));
   visit_contacts(c.state.contacts, items("/contacts"));
   visit_clock(c.state.clock, items("/clock"));
@@ -115,20 +118,48 @@ class ItemReader {
   bool before_;
 };
 
-/// Fields of points that the kind before did not have get their initial values.
-void fill_new_fields(ParticleState& points) {
-  const auto fill = [&](const ParticleField& field, int, auto& list) {
-    if (field.kept >= Kept::in_checkpoint && list.empty()) list.assign(points.size(), field.initial);
+bool is_optional(const ParticleField& field) { return field.needed_by != &ParticleNeeds::always; }
+
+/// Whether a list says more than that every value is the initial one.
+template <class T>
+bool tells(const std::vector<T>& list, int initial) {
+  const T value = static_cast<T>(initial);
+  return std::ranges::any_of(list, [&](const T& v) { return std::memcmp(&v, &value, sizeof(T)) != 0; });
+}
+
+/// Fields that not every run needs are written where they tell anything: a signal waits for the file.
+void write_points(h5::File& file, const SolverState& state) {
+  const ItemWriter items(file, points_group);
+  const auto write = [&](const ParticleField& field, int component, const auto& list) {
+    if (field.kept >= Kept::in_checkpoint && (!is_optional(field) || tells(list, field.initial)))
+      items(field.name_of(component), list);
   };
-  visit_particle_fields(fill, points);
+  visit_particle_fields(write, state.points);
+  if (!state.homes.empty()) file.write<std::int64_t>(homes, dims_of(state.homes.size()), state.homes);
+}
+
+void read_points(const h5::File& file, bool before, SolverState& state) {
+  const ItemReader item(file, points_group, before), optional(file, points_group, true);
+  const auto read = [&](const ParticleField& field, int component, auto& list) {
+    if (field.kept >= Kept::in_checkpoint) (is_optional(field) ? optional : item)(field.name_of(component), list);
+  };
+  visit_particle_fields(read, state.points);
+  const auto fill = [&](const ParticleField& field, int, auto& list) {
+    const bool may_lack = before || is_optional(field);
+    if (field.kept >= Kept::in_checkpoint && may_lack && list.empty()) list.assign(state.points.size(), field.initial);
+  };
+  visit_particle_fields(fill, state.points);
+  if (file.exists(homes)) state.homes = file.read_list<std::int64_t>(homes);
 }
 
 /// Whether a checkpoint is of the kind before; those of other kinds are refused.
 bool is_of_kind_before(const std::filesystem::path& path, const h5::TrustedFile& trusted) {
   const h5::File& file = trusted.file;
   const std::string found = file.has_attribute("/", "kind") ? file.text("/", "kind") : "";
-  if (found == kind) h5::expect_seal(trusted);
-  if (found == kind || found == kind_before) return found == kind_before;
+  if (found == kind || found == kind_before) {
+    h5::expect_seal(trusted);
+    return found == kind_before;
+  }
   if (!found.starts_with(any_kind)) file.fail("this is no checkpoint of this program");
   throw DataError(
       {fmt::format("{}: its kind is \"{}\"", path.string(), found),
@@ -158,7 +189,9 @@ class OneLength {
 };
 
 void check_lengths(const h5::File& file, const Checkpoint& c) {
-  visit_points(c.state.points, OneLength(file, "/points"));
+  OneLength points(file, points_group);
+  visit_points(c.state.points, points);
+  if (!c.state.homes.empty()) points("home", c.state.homes);
   OneLength maps(file, "/maps");
   visit_maps(c.state.maps, maps);
   visit_contacts(c.state.contacts, OneLength(file, "/contacts"));
@@ -172,10 +205,12 @@ void check_lengths(const h5::File& file, const Checkpoint& c) {
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   PendingFile pending(path);
   h5::File file = h5::File::create(pending.path(), {path, "Free some space, or name another folder with --out DIR"});
+  file.leave_plain();  // a signal waits for it
   file.set_text("/", "kind", kind);
   file.set_text("/", "fingerprint", checkpoint.fingerprint);
   file.set_text("/", "id", checkpoint.id);
   file.set_text("/", "stop_reason", checkpoint.stop_reason);
+  write_points(file, checkpoint.state);
   visit(checkpoint, [&](const char* group) { return ItemWriter(file, group); });
   visit_added_memory(checkpoint.memory,
                      [&](const char* name, std::int64_t value) { file.set_integer("/memory", name, value); });
@@ -210,9 +245,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
   }
   if (file.has_attribute("/", "id")) c.id = file.text("/", "id");
   if (file.has_attribute("/", "stop_reason")) c.stop_reason = file.text("/", "stop_reason");
+  read_points(file, before, c.state);
   visit(c, [&](const char* group) { return ItemReader(file, group, before); });
   visit_added_memory(c.memory, ItemReader(file, "/memory", true));
-  if (before) fill_new_fields(c.state.points);
   c.memory.history = read_history(file);
   check_lengths(file, c);
   return c;

@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How explicit steps begin, and how often a GPU sorts its points.
+// How explicit steps begin, how many are taken at a time, and how often a GPU sorts its points.
 #include "solver/explicit/explicit_solver.hpp"
 
 #include <gtest/gtest.h>
 
 #include "solver/explicit/column_contact.hpp"
+#include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
 #include "solver/state/clock.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -40,12 +43,19 @@ TEST(SortsOnAGpu, are_frequent_only_for_many_points_with_wide_stencils) {
   EXPECT_EQ(steps_between_sorts_on_gpu<Linear>(1000), steps_between_sorts_on_gpu<Linear>(1000000));
 }
 
-// A signal waits for a sort: 33 steps of a million points take eight seconds on two cores.
-TEST(SortsOnACpu, are_frequent_where_steps_take_long) {
-  EXPECT_EQ(steps_between_sorts_on_cpu(0), 32);
-  EXPECT_EQ(steps_between_sorts_on_cpu(120'000), 32);
-  EXPECT_EQ(steps_between_sorts_on_cpu(400'000), 10);
-  EXPECT_EQ(steps_between_sorts_on_cpu(50'000'000), 8);
+// A signal waits for the end of a batch.
+TEST(ExplicitSolver, takes_one_step_at_a_time_on_a_cpu) {
+  Domain domain = ground(12, 12, 10, 5, [](double, double) { return 0.0; });
+  fill(domain, {40, 80, 40, 80, 0, 5});
+  const SolveOptions options;
+  const Scene scene = make_scene(domain, options);
+  const auto solver = make_solver(scene, options, On::cpu);
+  solver->set_next_event(10);
+  for (int step = 1; step <= 3; ++step) {
+    const BatchReport report = solver->advance();
+    EXPECT_EQ(report.clock.step, step);
+    EXPECT_TRUE(report.can_be_saved);
+  }
 }
 
 }  // namespace

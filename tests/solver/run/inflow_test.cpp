@@ -55,7 +55,7 @@ struct Flume {
   }
 };
 
-/// Keeps nothing; takes down the state at the first sort after a time.
+/// Keeps nothing; takes down the state at the first step after a time.
 struct Watcher : RunKeeper {
   RunLoop& loop;
   double from;
@@ -65,7 +65,7 @@ struct Watcher : RunKeeper {
   explicit Watcher(RunLoop& watched, double after = 1e300) : loop(watched), from(after) {}
   void put_frame(double, std::int64_t) override {}
   void pass_batch(const BatchReport&) override {}
-  void pass_sort(bool) override {
+  void pass_whole_state(bool) override {
     if (state || loop.stepper().time() < from) return;
     memory = loop.memory();
     loop.history().keep(memory);

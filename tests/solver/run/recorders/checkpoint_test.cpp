@@ -5,13 +5,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <set>
+#include <vector>
 
 #include "common/run/hdf5.hpp"
 #include "solver/run/recorders/check_checkpoint.hpp"
@@ -27,6 +30,7 @@ namespace {
 
 using test::fault_of;
 using test::Scratch;
+using testing::place_name;
 
 /// Converts to anything: for counting the members of an aggregate.
 struct Anything {
@@ -148,31 +152,106 @@ void expect_same_points(const ParticleState& a, const ParticleState& b) {
       a, b);
 }
 
-/// Sliding sand, taken through a file half-way, against a run without a break.
-TEST(Checkpoint, a_run_goes_on_from_a_file_bit_for_bit) {
-  Domain domain = testing::ground(24, 16, 10, 5, [](double x, double) { return 0.4 * x; });
-  testing::fill(domain, {120, 180, 50, 110, 0, 20});
+/// Sand that slides out of the domain.
+struct Sliding {
   SolveOptions options;
-  options.largest_step = 0.05;
-  const Scene scene = make_scene(domain, options);
-  const auto unbroken = make_solver(scene, options, CpuDevice::make());
-  BatchReport batch;
-  unbroken->set_next_event(1000);
-  while (!batch.sorted) batch = unbroken->advance();
+  Scene scene;
 
-  const Scratch scratch;
-  write_checkpoint(scratch / "checkpoint.h5", {"fingerprint", "a1", "", unbroken->state(), {}});
-  const Checkpoint half_way = read_checkpoint(scratch / "checkpoint.h5", "fingerprint");
-  EXPECT_GT(half_way.state.clock.step, 0);
-  expect_same_points(half_way.state.points, unbroken->state().points);
-  const auto resumed = resume_solver(scene, options, CpuDevice::make(), half_way.state);
+  explicit Sliding(const SolveOptions& asked) : options(asked) {
+    Domain domain = testing::ground(24, 16, 10, 5, [](double x, double) { return 0.4 * x; });
+    testing::fill(domain, {60, 120, 50, 110, 0, 20});
+    options.largest_step = 0.05;
+    scene = make_scene(domain, options);
+  }
+  std::unique_ptr<Solver> from_start(const AnyDevice& device) const {
+    auto solver = make_solver(scene, options, device);
+    solver->set_next_event(1000);
+    return solver;
+  }
+  /// The state as --restart gets it.
+  SolverState through_a_file(const SolverState& state) const {
+    const Scratch scratch;
+    Checkpoint checkpoint{"fingerprint", "a1", "", state, {}};
+    checkpoint.memory.initial_thickness.assign(scene.map.count(), 0.0);
+    write_checkpoint(scratch / "checkpoint.h5", checkpoint);
+    const Checkpoint back = read_checkpoint(scratch / "checkpoint.h5", "fingerprint");
+    check_checkpoint(scratch / "checkpoint.h5", back, scene);
+    EXPECT_EQ(back.state.homes, state.homes);
+    expect_same_points(back.state.points, state.points);
+    return back.state;
+  }
+};
 
-  const double end = half_way.state.clock.time + 1;
-  for (Solver* solver : {unbroken.get(), resumed.get()}) testing::run_to(*solver, end);
-  EXPECT_EQ(clock_bits(resumed->clock()), clock_bits(unbroken->clock()));
-  expect_same_points(resumed->state().points, unbroken->state().points);
-  EXPECT_EQ(resumed->state().maps.peak_speed, unbroken->state().maps.peak_speed);
+long points_outside(const SolverState& state) {
+  return std::count_if(state.points.cell[0].begin(), state.points.cell[0].end(), [](int cell) { return cell < 0; });
 }
+
+/// Taken through a file after a sort and at every seventh step until the next but one, against a run without a break.
+TEST(Checkpoint, a_run_goes_on_from_a_file_bit_for_bit) {
+  std::vector<SolveOptions> ways(4);
+  ways[1].precision = Precision::single_;
+  ways[2].integrator = Integrator::column_implicit;
+  ways[3].shape = ShapeKind::gimp;
+  ways[3].material.model = MaterialModel::mu_of_i;
+  for (const SolveOptions& way : ways) {
+    SCOPED_TRACE(&way - ways.data());
+    const Sliding sliding(way);
+    const auto unbroken = sliding.from_start(CpuDevice::make());
+    BatchReport batch;
+    while (batch.outflow_count == 0) batch = unbroken->advance();  // until a sort has dropped some
+    std::vector<std::unique_ptr<Solver>> resumed;
+    long outside = 0;
+    for (int sorts = 0, step = 0; sorts < 2; ++step, sorts += batch.sorted ? 1 : 0) {
+      EXPECT_TRUE(batch.can_be_saved);
+      const SolverState state = unbroken->state();
+      EXPECT_EQ(state.homes.empty(), batch.sorted);
+      outside = std::max(outside, points_outside(state));
+      if (step % 7 == 0)
+        resumed.push_back(
+            resume_solver(sliding.scene, sliding.options, CpuDevice::make(), sliding.through_a_file(state)));
+      batch = unbroken->advance();
+    }
+    EXPECT_GT(outside, 0) << "points that have left wait for a sort";
+    EXPECT_GT(resumed.size(), 4u);
+    const double end = unbroken->clock().time + 1;
+    testing::run_to(*unbroken, end);
+    const SolverState one = unbroken->state();
+    for (const auto& solver : resumed) {
+      testing::run_to(*solver, end);
+      const SolverState other = solver->state();
+      EXPECT_EQ(clock_bits(other.clock), clock_bits(one.clock));
+      expect_same_points(other.points, one.points);
+      EXPECT_EQ(other.maps.peak_speed, one.maps.peak_speed);
+    }
+  }
+}
+
+class CheckpointBetweenSorts : public testing::InEachPlace {};
+
+TEST_P(CheckpointBetweenSorts, leads_to_the_same_slide_wherever_the_run_goes_on) {
+  const Sliding sliding(SolveOptions{});
+  const auto unbroken = sliding.from_start(CpuDevice::make());
+  double left = 0;
+  while (points_outside(unbroken->state()) == 0) left += unbroken->advance().outflow_volume;
+  const auto resumed =
+      resume_solver(sliding.scene, sliding.options, make_device(GetParam()), sliding.through_a_file(unbroken->state()));
+  double after[2] = {left, left};
+  const double end = unbroken->clock().time + 1;
+  for (int n = 0; n < 2; ++n) {
+    Solver& solver = n == 0 ? *unbroken : *resumed;
+    solver.set_next_event(end);
+    for (BatchReport batch; batch.clock.time < end;) {
+      batch = solver.advance();
+      after[n] += batch.outflow_volume;
+    }
+  }
+  const Energies a = unbroken->energies(), b = resumed->energies();
+  EXPECT_GT(after[0], left);
+  EXPECT_NEAR(after[1], after[0], 1e-9 * after[0]);
+  EXPECT_NEAR(b.volume, a.volume, 1e-9 * a.volume);
+  EXPECT_NEAR(b.kinetic / a.kinetic, 1, 1e-6);  // as on a GPU without a break (Places, agree_on_a_slide)
+}
+TALUS_IN_EACH_PLACE(CheckpointBetweenSorts);
 
 TEST(Checkpoint, a_look_at_it_tells_whose_it_is_and_how_far_it_is) {
   const Scratch scratch;
@@ -190,7 +269,7 @@ TEST(Checkpoint, a_look_at_it_tells_whose_it_is_and_how_far_it_is) {
 }
 
 TEST(Checkpoint, the_kind_before_is_read) {
-  const auto path = std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/checkpoint-5.h5";
+  const auto path = std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/checkpoint-6.h5";
   const Checkpoint c = read_checkpoint(path, h5::File::open(path, {path, ""}).text("/", "fingerprint"));
   EXPECT_EQ(c.state.clock.step, 352);
   EXPECT_EQ(c.state.clock.time, 6.5);
@@ -268,18 +347,33 @@ TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it)
                 c.state.contacts.force = {1, 2, 3};
               }).starts_with(no_fit + "force has 3"));
   EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.clock.halt = 9; }).starts_with(no_fit + "its clock stands at"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) {
+                c.state.points.cell[0][0] = -1;
+              }).starts_with(no_fit + "1 of its points are outside, and its clock counts 0)"));
+  // Homes are the cells (5, 5, 0) of the one point, or others.
+  const auto home = [](int i, int j, int k) {
+    return [key = home_key(blocks_across(12), i, j, k)](Checkpoint& c) {
+      c.state.homes.assign(c.state.points.size(), static_cast<std::int64_t>(key));
+    };
+  };
+  const int at[3] = {scene.points.cell[0][0], scene.points.cell[1][0], scene.points.cell[2][0]};
+  EXPECT_EQ(fault_with(home(at[0], at[1], at[2])), "");
+  EXPECT_EQ(fault_with(home(at[0] + 1, at[1] - 1, at[2] + 1)), "");
+  EXPECT_TRUE(fault_with(home(at[0] + 2, at[1], at[2])).starts_with(no_fit + "home of point 0 is cell"));
+  EXPECT_TRUE(fault_with(home(at[0], at[1], at[2] + 2)).starts_with(no_fit + "home of point 0 is cell"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.homes = {-1}; }).starts_with(no_fit + "home of point 0 is cell"));
 }
 
 TEST(Checkpoint, an_older_kind_is_refused_in_words) {
   const Scratch scratch;
   const auto path = scratch / "checkpoint.h5";
   h5::File file = h5::File::create(path, {path, ""});
-  file.set_text("/", "kind", "talus checkpoint 4");
+  file.set_text("/", "kind", "talus checkpoint 5");
   file.close();
   EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
             path.string() +
-                ": its kind is \"talus checkpoint 4\" (another version of this program wrote it, this one reads "
-                "\"talus checkpoint 5\" and \"talus checkpoint 6\"). Run talus-solve again without --restart, or go on "
+                ": its kind is \"talus checkpoint 5\" (another version of this program wrote it, this one reads "
+                "\"talus checkpoint 6\" and \"talus checkpoint 7\"). Run talus-solve again without --restart, or go on "
                 "with the version that "
                 "wrote it");
 }
