@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "common/stage/write_fault.hpp"
+#include "postprocess/maps/nc_record.hpp"
 
 namespace talus::postprocess {
 
@@ -35,20 +36,32 @@ class Nc {
   ~Nc() {
     if (root_ >= 0) nc_abort(root_);
   }
-  /// Ends the file and returns its bytes.
+  /// Ends the file and returns its bytes, which have been read back: they hold all that was given.
   std::string close() {
     NC_memio image{};
     check(nc_close_memio(std::exchange(root_, -1), &image), "closing it");
     const std::unique_ptr<void, decltype(&std::free)> owner(image.memory, &std::free);
-    return {static_cast<const char*>(image.memory), image.size};
+    std::string bytes(static_cast<const char*>(image.memory), image.size);
+    if (const std::string difference = record_.difference(bytes); !difference.empty())
+      throw DataError(write_fault(shown_, "the NetCDF library kept something else than it was given: " + difference));
+    return bytes;
   }
 
   /// Makes a group below the file's own. What follows is defined and written there, until leave_group().
-  void enter_group(const char* name) { check(nc_def_grp(root_, name, &id_), name); }
+  void enter_group(const char* name) {
+    check(nc_def_grp(root_, name, &id_), name);
+    group_ = name;
+  }
   /// Goes on in the group that was left.
-  void reenter_group(const char* name) { check(nc_inq_grp_ncid(root_, name, &id_), name); }
+  void reenter_group(const char* name) {
+    check(nc_inq_grp_ncid(root_, name, &id_), name);
+    group_ = name;
+  }
   /// Goes back to the file's own variables.
-  void leave_group() { id_ = root_; }
+  void leave_group() {
+    id_ = root_;
+    group_.clear();
+  }
 
   /// Defines a dimension and returns its id.
   int dimension(const char* name, std::size_t size) {
@@ -76,42 +89,68 @@ class Nc {
   /// Sets an attribute that is text; NC_GLOBAL as the variable sets one of the file.
   void text(int variable, const char* name, const std::string& value) {
     check(nc_put_att_text(id_, variable, name, value.size(), value.data()), name);
+    record_.text(place(variable), name, value);
   }
   /// Sets an attribute that is a list of numbers.
   void numbers(int variable, const char* name, const std::vector<double>& values) {
     check(nc_put_att_double(id_, variable, name, NC_DOUBLE, values.size(), values.data()), name);
+    record_.numbers(place(variable), name, values);
   }
   /// Sets an attribute that is a list of whole numbers.
   void integers(int variable, const char* name, const std::vector<int>& values) {
     check(nc_put_att_int(id_, variable, name, NC_INT, values.size(), values.data()), name);
+    record_.numbers(place(variable), name, {values.begin(), values.end()});
   }
   /// Writes all values of a variable of texts.
   void put_texts(int variable, const std::vector<std::string>& texts) {
     std::vector<const char*> begins;
     for (const std::string& text : texts) begins.push_back(text.c_str());
     check(nc_put_var_string(id_, variable, begins.data()), "texts");
+    record_.texts(place(variable), texts);
   }
   /// Writes all values of a variable.
   void put(int variable, const std::vector<double>& values) {
     check(nc_put_var_double(id_, variable, values.data()), "values");
+    const std::vector<std::size_t> count = lengths_of(variable);
+    record_.values(place(variable), std::vector<std::size_t>(count.size(), 0), count, values);
   }
   /// Writes the values of one map, of those that follow one another in time or by another coordinate.
   void put_map(int variable, std::size_t time, std::size_t rows, std::size_t columns,
                const std::vector<double>& values) {
     const std::size_t start[] = {time, 0, 0}, count[] = {1, rows, columns};
     check(nc_put_vara_double(id_, variable, start, count, values.data()), "values");
+    record_.values(place(variable), {time, 0, 0}, {1, rows, columns}, values);
   }
   /// Ends the header: values may follow.
   void end_definitions() { check(nc_enddef(root_), "header"); }
 
  private:
+  /// The place of a variable of the group that is written to.
+  NcRecord::Place place(int variable) {
+    char name[NC_MAX_NAME + 1] = "";
+    if (variable != NC_GLOBAL) check(nc_inq_varname(id_, variable, name), "variable");
+    return {group_, name};
+  }
+  /// The lengths of the dimensions of a variable.
+  std::vector<std::size_t> lengths_of(int variable) {
+    int rank = 0;
+    check(nc_inq_varndims(id_, variable, &rank), "dimensions");
+    std::vector<int> dimensions(static_cast<std::size_t>(rank));
+    check(nc_inq_vardimid(id_, variable, dimensions.data()), "dimensions");
+    std::vector<std::size_t> lengths(dimensions.size());
+    for (std::size_t d = 0; d < dimensions.size(); ++d)
+      check(nc_inq_dimlen(id_, dimensions[d], &lengths[d]), "dimensions");
+    return lengths;
+  }
   void check(int status, const char* doing) {
     if (status != NC_NOERR) throw DataError(write_fault(shown_, fmt::format("{}: {}", doing, nc_strerror(status))));
   }
 
   std::filesystem::path shown_;
   int root_ = -1;
-  int id_ = -1;  // the file itself, or the group that was entered
+  int id_ = -1;        ///< the file itself, or the group that was entered
+  std::string group_;  ///< its name; empty: the file itself
+  NcRecord record_;
 };
 
 }  // namespace talus::postprocess
