@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contact points beside the mass: those of the blocks of columns that have storage.
+// The contact points beside the mass: those of the blocks of columns that have storage, and of the blocks around them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -40,11 +41,12 @@ class NearbyContacts {
   /// The number of contact points, near or not.
   int count() const { return count_; }
 
-  /// The method takes the blocks that hold mass from now on.
+  /// The method takes the blocks that hold mass from now on. Points of the blocks around them are near too: the stencil
+  /// of a point at the edge of its block reaches nodes of the next.
   void fit(const std::vector<int>& active_blocks) {
     for (auto& ranges : groups_.ranges) ranges.clear();
     std::vector<int> near;
-    for (const int block : active_blocks) {
+    for (const int block : with_neighbours(active_blocks)) {
       const int begin = first_[static_cast<std::size_t>(block)], end = first_[static_cast<std::size_t>(block) + 1];
       if (begin == end) continue;
       if (by_list()) {
@@ -71,6 +73,21 @@ class NearbyContacts {
   std::size_t bytes() const { return list_.bytes(); }
 
  private:
+  /// The blocks and those that touch one of them, in order.
+  std::vector<int> with_neighbours(const std::vector<int>& blocks) const {
+    const int count = static_cast<int>(first_.size()) - 1;
+    std::vector<char> taken(static_cast<std::size_t>(count), 0);
+    for (const int block : blocks) {
+      const int x = block % blocks_x_, y = block / blocks_x_;
+      for (int j = std::max(y - 1, 0); j <= y + 1 && j * blocks_x_ < count; ++j)
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, blocks_x_ - 1); ++i)
+          taken[static_cast<std::size_t>(j * blocks_x_ + i)] = 1;
+    }
+    std::vector<int> all;
+    for (int block = 0; block < count; ++block)
+      if (taken[static_cast<std::size_t>(block)] != 0) all.push_back(block);
+    return all;
+  }
   bool by_list() const { return Device::is_gpu && !groups_.in_order; }
 
   Device device_;

@@ -13,13 +13,19 @@
 
 namespace talus::solver {
 
-/// One thread: one contact point. It forgets its force where the mass has left the block.
+/// One thread: one contact point. It forgets its force where the mass has left its block and those around it.
 template <class Real>
 struct ForgetForces {
   GridView<Real> grid;
   ContactView<Real> contacts;
   TALUS_HD void operator()(int c) const {
-    if (grid.slot(contacts.places.cell[0][c], contacts.places.cell[1][c]).offset >= 0) return;
+    const int x = contacts.places.cell[0][c] >> 2, y = contacts.places.cell[1][c] >> 2;
+    const int across = grid.block_columns_x, rows = blocks_across(grid.rows);
+    for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < rows; ++j) {
+      for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < across; ++i) {
+        if (grid.slots[j * across + i].offset >= 0) return;
+      }
+    }
     contacts.force[c] = {};
     contacts.inverse_mass[c] = Real(0);
   }
