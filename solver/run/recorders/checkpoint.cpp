@@ -3,7 +3,8 @@
 #include "solver/run/recorders/checkpoint.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -120,11 +121,13 @@ class ItemReader {
 
 bool is_optional(const ParticleField& field) { return field.needed_by != &ParticleNeeds::always; }
 
-/// Whether a list says more than that every value is the initial one.
-template <class T>
-bool tells(const std::vector<T>& list, int initial) {
-  const T value = static_cast<T>(initial);
-  return std::ranges::any_of(list, [&](const T& v) { return std::memcmp(&v, &value, sizeof(T)) != 0; });
+/// Whether a list says more than that every value is the initial one; -0 is not 0.
+bool tells(const std::vector<int>& list, int initial) {
+  return std::ranges::any_of(list, [&](int value) { return value != initial; });
+}
+bool tells(const std::vector<double>& list, int initial) {
+  const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(initial));
+  return std::ranges::any_of(list, [&](double value) { return std::bit_cast<std::uint64_t>(value) != bits; });
 }
 
 /// Fields that not every run needs are written where they tell anything: a signal waits for the file.
