@@ -53,14 +53,18 @@ double largest(const std::vector<int>& values) {
 /// Homes are in the order of the sort, and no point has gone further from its own than a step may begin with.
 void check_homes(const Fits& fits, const SolverState& state, const Scene& scene) {
   const std::vector<std::int64_t>& homes = state.homes;
+  const int across = blocks_across(scene.grid.columns);
+  const std::int64_t blocks = std::int64_t{across} * blocks_across(scene.grid.rows), end = blocks << key_block_shift;
   if (!std::is_sorted(homes.begin(), homes.end())) fits.refuse("its points are not in the order of their homes");
   const ParticleState& points = state.points;
   for (std::size_t p = 0; p < homes.size(); ++p) {
-    const HomeCell home(blocks_across(scene.grid.columns), static_cast<std::uint64_t>(homes[p]));
+    if (homes[p] < 0 || homes[p] >= end)
+      fits.refuse(fmt::format("home of point {} is {}; 0 to {} is possible", p, homes[p], end - 1));
+    const HomeCell home(across, static_cast<std::uint64_t>(homes[p]));
     const int cell[3] = {points.cell[0][p], points.cell[1][p], points.cell[2][p]};
     const bool here = cell[0] < 0 || (std::abs(cell[0] - home.i) <= 1 && std::abs(cell[1] - home.j) <= 1 &&
                                       std::abs(cell[2] - home.k) <= 1);
-    if (homes[p] < 0 || home.i >= scene.grid.columns || home.j >= scene.grid.rows || !here)
+    if (home.i >= scene.grid.columns || home.j >= scene.grid.rows || !here)
       fits.refuse(fmt::format("home of point {} is cell {}, {}, {}; the point is in {}, {}, {}", p, home.i, home.j,
                               home.k, cell[0], cell[1], cell[2]));
   }

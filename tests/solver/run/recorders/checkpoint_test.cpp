@@ -361,7 +361,8 @@ TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it)
   EXPECT_EQ(fault_with(home(at[0] + 1, at[1] - 1, at[2] + 1)), "");
   EXPECT_TRUE(fault_with(home(at[0] + 2, at[1], at[2])).starts_with(no_fit + "home of point 0 is cell"));
   EXPECT_TRUE(fault_with(home(at[0], at[1], at[2] + 2)).starts_with(no_fit + "home of point 0 is cell"));
-  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.homes = {-1}; }).starts_with(no_fit + "home of point 0 is cell"));
+  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.homes = {-1}; }).starts_with(no_fit + "home of point 0 is -1"));
+  EXPECT_TRUE(fault_with(home(at[0], 12, at[2])).starts_with(no_fit + "home of point 0 is "));
 }
 
 TEST(Checkpoint, an_older_kind_is_refused_in_words) {
