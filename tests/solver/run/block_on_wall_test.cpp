@@ -77,6 +77,7 @@ TEST_P(BlockOnWall, gives_it_the_same_wherever_it_stands_among_the_blocks_of_col
       SolveOptions o = gliding(scratch / "wall.vdb", further);
       o.integrator = integrator;
       o.implicit.step = 0.01;
+      o.deterministic = further == 3;  // points are sorted at other times on a GPU
       const RunHistory h = recorded(block_before_the_wall(1, further), o, GetParam(), 0.8, 0.1);
       const std::vector<double>& impulse = h.at("obstacle_wall_impulse_x_N_s").values;
       if (first.empty()) first = impulse;
