@@ -26,11 +26,11 @@ class Fits {
   void length(const char* name, std::size_t found, std::size_t expected) const {
     if (found != expected) refuse(fmt::format("{} has {} values, the scene asks for {}", name, found, expected));
   }
-  template <class T>
-  void within(const char* name, const std::vector<T>& values, double low, double high) const {
+  template <class T, class Low, class High>
+  void within(const char* name, const std::vector<T>& values, Low low, High high) const {
     for (std::size_t p = 0; p < values.size(); ++p) {
       if (values[p] >= low && values[p] <= high) continue;
-      refuse(fmt::format("{} of point {} is {}; {:g} to {:g} is possible", name, p, values[p], low, high));
+      refuse(fmt::format("{} of point {} is {}; {} to {} is possible", name, p, values[p], low, high));
     }
   }
   void all_different(const char* name, const std::vector<int>& values, std::size_t count) const {
@@ -54,12 +54,11 @@ double largest(const std::vector<int>& values) {
 void check_homes(const Fits& fits, const SolverState& state, const Scene& scene) {
   const std::vector<std::int64_t>& homes = state.homes;
   const int across = blocks_across(scene.grid.columns);
-  const std::int64_t blocks = std::int64_t{across} * blocks_across(scene.grid.rows), end = blocks << key_block_shift;
+  const std::int64_t blocks = std::int64_t{across} * blocks_across(scene.grid.rows);
+  fits.within("home", homes, 0, (blocks << key_block_shift) - 1);
   if (!std::is_sorted(homes.begin(), homes.end())) fits.refuse("its points are not in the order of their homes");
   const ParticleState& points = state.points;
   for (std::size_t p = 0; p < homes.size(); ++p) {
-    if (homes[p] < 0 || homes[p] >= end)
-      fits.refuse(fmt::format("home of point {} is {}; 0 to {} is possible", p, homes[p], end - 1));
     const HomeCell home(across, static_cast<std::uint64_t>(homes[p]));
     const int cell[3] = {points.cell[0][p], points.cell[1][p], points.cell[2][p]};
     const bool here = cell[0] < 0 || (std::abs(cell[0] - home.i) <= 1 && std::abs(cell[1] - home.j) <= 1 &&

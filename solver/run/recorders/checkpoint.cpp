@@ -30,11 +30,12 @@ constexpr const char* points_group = "/points";
 constexpr const char* homes = "/points/home";  // only there where steps were taken since points were sorted
 constexpr const char* mend = "Run talus-solve again without --restart";
 
-/// Calls item(name, list) for every list of the points, so that writing and reading cannot differ.
+/// Calls item(field, name, list) for every list of the points that a checkpoint keeps, so that writing, reading and
+/// checking cannot differ.
 template <class State, class Item>
 void visit_points(State& s, Item&& item) {
   const auto visit_one = [&](const ParticleField& field, int component, auto& list) {
-    if (field.kept >= Kept::in_checkpoint) item(field.name_of(component), list);
+    if (field.kept >= Kept::in_checkpoint) item(field, field.name_of(component), list);
   };
   visit_particle_fields(visit_one, s);
 }
@@ -133,25 +134,20 @@ bool tells(const std::vector<double>& list, int initial) {
 /// Fields that not every run needs are written where they tell anything: a signal waits for the file.
 void write_points(h5::File& file, const SolverState& state) {
   const ItemWriter items(file, points_group);
-  const auto write = [&](const ParticleField& field, int component, const auto& list) {
-    if (field.kept >= Kept::in_checkpoint && (!is_optional(field) || tells(list, field.initial)))
-      items(field.name_of(component), list);
-  };
-  visit_particle_fields(write, state.points);
+  visit_points(state.points, [&](const ParticleField& field, const std::string& name, const auto& list) {
+    if (!is_optional(field) || tells(list, field.initial)) items(name, list);
+  });
   if (!state.homes.empty()) file.write<std::int64_t>(homes, dims_of(state.homes.size()), state.homes);
 }
 
 void read_points(const h5::File& file, bool before, SolverState& state) {
-  const ItemReader item(file, points_group, before), optional(file, points_group, true);
-  const auto read = [&](const ParticleField& field, int component, auto& list) {
-    if (field.kept >= Kept::in_checkpoint) (is_optional(field) ? optional : item)(field.name_of(component), list);
-  };
-  visit_particle_fields(read, state.points);
-  const auto fill = [&](const ParticleField& field, int, auto& list) {
-    const bool may_lack = before || is_optional(field);
-    if (field.kept >= Kept::in_checkpoint && may_lack && list.empty()) list.assign(state.points.size(), field.initial);
-  };
-  visit_particle_fields(fill, state.points);
+  const auto may_lack = [&](const ParticleField& field) { return before || is_optional(field); };
+  visit_points(state.points, [&](const ParticleField& field, const std::string& name, auto& list) {
+    ItemReader(file, points_group, may_lack(field))(name, list);
+  });
+  visit_points(state.points, [&](const ParticleField& field, const std::string&, auto& list) {
+    if (may_lack(field) && list.empty()) list.assign(state.points.size(), field.initial);
+  });
   if (file.exists(homes)) state.homes = file.read_list<std::int64_t>(homes);
 }
 
@@ -193,7 +189,8 @@ class OneLength {
 
 void check_lengths(const h5::File& file, const Checkpoint& c) {
   OneLength points(file, points_group);
-  visit_points(c.state.points, points);
+  visit_points(c.state.points,
+               [&](const ParticleField&, const std::string& name, const auto& list) { points(name, list); });
   if (!c.state.homes.empty()) points("home", c.state.homes);
   OneLength maps(file, "/maps");
   visit_maps(c.state.maps, maps);
