@@ -43,7 +43,9 @@ class Nc {
     const std::unique_ptr<void, decltype(&std::free)> owner(image.memory, &std::free);
     std::string bytes(static_cast<const char*>(image.memory), image.size);
     if (const std::string difference = record_.difference(bytes); !difference.empty())
-      throw DataError(write_fault(shown_, "the NetCDF library kept something else than it was given: " + difference));
+      refuse_file(shown_, "cannot be written",
+                  "the NetCDF library kept something else than it was given: " + difference,
+                  "Memory may have run out: free some, and run talus-postprocess again");
     return bytes;
   }
 
@@ -110,21 +112,23 @@ class Nc {
   }
   /// Writes all values of a variable.
   void put(int variable, const std::vector<double>& values) {
-    check(nc_put_var_double(id_, variable, values.data()), "values");
     const std::vector<std::size_t> count = lengths_of(variable);
-    record_.values(place(variable), std::vector<std::size_t>(count.size(), 0), count, values);
+    put_block(variable, std::vector<std::size_t>(count.size(), 0), count, values);
   }
   /// Writes the values of one map, of those that follow one another in time or by another coordinate.
   void put_map(int variable, std::size_t time, std::size_t rows, std::size_t columns,
                const std::vector<double>& values) {
-    const std::size_t start[] = {time, 0, 0}, count[] = {1, rows, columns};
-    check(nc_put_vara_double(id_, variable, start, count, values.data()), "values");
-    record_.values(place(variable), {time, 0, 0}, {1, rows, columns}, values);
+    put_block(variable, {time, 0, 0}, {1, rows, columns}, values);
   }
   /// Ends the header: values may follow.
   void end_definitions() { check(nc_enddef(root_), "header"); }
 
  private:
+  void put_block(int variable, const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
+                 const std::vector<double>& values) {
+    check(nc_put_vara_double(id_, variable, start.data(), count.data(), values.data()), "values");
+    record_.values(place(variable), start, count, values);
+  }
   /// The place of a variable of the group that is written to.
   NcRecord::Place place(int variable) {
     char name[NC_MAX_NAME + 1] = "";
