@@ -8,6 +8,7 @@
 
 #include "solver/boundary/base_friction.hpp"
 #include "solver/parallel/atomics.hpp"
+#include "solver/parallel/launch.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/state/gravity.hpp"
 #include "solver/state/grid_view.hpp"
@@ -216,6 +217,7 @@ TALUS_HD Slip<Number> column_slip(const LyingMatter<Number>& matter, const Colum
 /// rise after a step under `gravity` [m/s2].
 template <class Real, class Nodes>
 struct MeasureColumns {
+  static constexpr bool with_other_runs = runs_with_others<Nodes>();
   using Number = typename Nodes::Number;
   GridView<Real> grid;
   const int* active;
@@ -246,6 +248,7 @@ struct MeasureColumns {
 /// begins, for the masses that are known.
 template <class Real, class Nodes>
 struct MeasureCoefficients {
+  static constexpr bool with_other_runs = runs_with_others<Nodes>();
   using Number = typename Nodes::Number;
   GridView<Real> grid;
   const int* active;

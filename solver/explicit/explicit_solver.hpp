@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "solver/explicit/column_contact.hpp"
+#include "solver/explicit/ends_of_steps.hpp"
 #include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/explicit/solve_columns.hpp"
+#include "solver/explicit/sort_intervals.hpp"
 #include "solver/explicit/update_columns.hpp"
 #include "solver/integrator/at_home.hpp"
 #include "solver/integrator/point_solver.hpp"
@@ -27,52 +29,7 @@
 
 namespace talus::solver {
 
-/// The steps between sorts on a GPU: it gains little by order within the cells, and sorting there takes as long as ten
-/// steps.
-inline constexpr int gpu_steps_between_sorts = 256;
-/// The steps between sorts where many points keep a GPU busy: what lies apart costs more than sorting then.
-inline constexpr int busy_gpu_steps_between_sorts = 32;
-/// The steps between sorts on a GPU for a number of points: `busy_gpu_steps_between_sorts` where many points have wide
-/// stencils.
-template <class Shape>
-int steps_between_sorts_on_gpu(int points) {
-  return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts
-                                                                   : gpu_steps_between_sorts;
-}
-/// The steps between sorts on a CPU: in places of memory that lie apart, steps become slower.
-inline constexpr int cpu_steps_between_sorts = 32;
-/// The way that points may go before they are sorted: a sort takes as long as a dozen steps of a small scene, and more
-/// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one.
-template <class Device>
-Drift drift_between_sorts(bool deterministic) {
-  if (!Device::is_gpu || deterministic) return {};
-  return {.columns = 6, .layers = 3};
-}
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
-
-/// One thread: one node. It clears the node; the first one also opens the step.
-template <class Real>
-struct BeginStep {
-  Clock* clock;
-  Vec4<Real>* nodes;
-  Vec4<Real>* forces;  ///< null when forces are folded into the momentum
-  int count;
-  bool opens;
-  ShakingView shaking{};
-  /// The memory that the kernel moves [bytes].
-  double bytes(int) const { return count * static_cast<double>((forces ? 2 : 1) * sizeof(*nodes)); }
-  TALUS_HD void operator()(int n) const {
-    if (n == 0 && opens) {
-      Clock now = *clock;  // read at once, not number by number as it is needed
-      now.begin_step();
-      if (shaking.acts() && now.halt == running) now.shake(shaking.velocity_at(now.time));
-      *clock = now;
-    }
-    if (n >= count) return;
-    nodes[n] = Vec4<Real>{};
-    if (forces) forces[n] = Vec4<Real>{};
-  }
-};
 
 /// The integrator of explicit steps: clear, scatter, update, gather.
 template <class Real, class Device, class Shape>
@@ -85,6 +42,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                    const SolverState& state)
       : Base(device, scene, settings, state, needs(settings), drift_between_sorts<Device>(settings.deterministic)),
+        recording_(device, Base::starts_with_others()),
         affine_(settings.transfer.affine),
         musl_(settings.transfer.remaps_velocity),
         keeps_(settings.transfer.time > 0),
@@ -114,20 +72,13 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     walls_ = this->template set_walls<Real>(clock.time);
     loads_now_ = loads_.upload(clock.time, clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
-    clock_.hand_over();
-    recording_.repeat(steps_ahead(clock), [&] { step(); });
+    clock_.lend();
+    recording_.repeat(
+        steps_ahead(clock), [&] { step(); }, [&] { clock_.pass_in(); }, [&] { close(); });
     BatchReport report;
     clock = clock_.read();
-    const bool by_host = clock.halt == running;  // no further step has looked whether something is due
-    clock.halt_where_due();
     const int halt = clock.halt;
-    if (halt == at_event) {
-      if (by_host) {
-        this->measure_columns();
-        this->sum_motion(nullptr);
-      }
-      this->record_motion();
-    }
+    this->measured_ = halt == at_event && recording_.has_company();
     if (halt == wants_sort) expected_ = clock.steps_since_sort;
     // A sort comes before an event of the same time (Clock::begin_step), and the event's records see who has left.
     if (halt == wants_sort || (halt == at_event && clock.outflow_count > 0)) {
@@ -200,6 +151,19 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   int steps_between_sorts() const {
     if constexpr (Device::is_gpu) return steps_between_sorts_on_gpu<Shape>(points_.count());
     return cpu_steps_between_sorts;
+  }
+
+  /// The method ends a batch: it halts where something is due, and records the maps of speed and pressure at an event.
+  void close() {
+    for_each(device_, 1, CloseBatch{clock_.data()});
+    clock_.pass_out();
+    if constexpr (!Device::is_gpu) {
+      if (clock_.data()->halt != at_event) return;
+    }
+    this->measure_columns();
+    this->sum_motion(clock_.data());
+    this->record_motion();
+    if (recording_.has_company()) this->start_measures();  // so that a record needs no start of its own
   }
 
   /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
@@ -395,8 +359,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     if (solves_columns_) mobilities_.resize(static_cast<std::size_t>(grid_.nodes()));
   }
 
-  Recording<Device> recording_{device_};  ///< of a step
-  int expected_ = 32;                     ///< steps between sorts
+  Recording<Device> recording_;  ///< of a step
+  int expected_ = 32;            ///< steps between sorts
   bool affine_, musl_;
   bool keeps_;           ///< points keep some of the velocity that is finer than the grid
   bool solves_columns_;  ///< inertia is implicit by columns

@@ -28,6 +28,7 @@ struct Mobility {
 /// With `counts` the losses (T24) are counted.
 template <class Real, bool counts = false>
 struct SolveColumns {
+  static constexpr bool with_other_runs = !counts;
   GridView<Real> grid;
   const int* active;
   Clock* clock;

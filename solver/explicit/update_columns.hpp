@@ -29,6 +29,7 @@ enum class NodeContent {
 template <class Real, NodeContent content, bool counts = false>
 struct UpdateColumns {
   static_assert(!counts || content == NodeContent::force);
+  static constexpr bool with_other_runs = !counts;
   GridView<Real> grid;
   const int* active;
   Clock* clock;

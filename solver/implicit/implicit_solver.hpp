@@ -40,6 +40,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   /// NumericalError where the smallest step does not converge. Where the controls give up, the state stays that of the
   /// step's start, and the report counts no iteration.
   BatchReport advance() override {
+    this->measured_ = false;
     Clock clock = clock_.read();
     clock.halt = clock.request = running;
     clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);

@@ -14,6 +14,7 @@
 #include "solver/parallel/atomics.hpp"
 #include "solver/parallel/buffer.hpp"
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/host_room.hpp"
 #include "solver/state/grid_view.hpp"
 #include "solver/state/particles.hpp"
 
@@ -28,6 +29,7 @@ inline constexpr int packing_bins = 1024, packing_bins_to_one = 100;
 /// One thread: one point. Its initial volume goes to the cell of its nearest node [parts of a cell].
 template <class Real>
 struct ScatterParts {
+  static constexpr bool with_other_runs = true;
   GridView<Real> grid;
   ParticleView<Real> points;
   CellParts* parts;
@@ -49,6 +51,7 @@ TALUS_HD double room_along(int from_edge) { return from_edge == 0 ? 0.5 : 1.0; }
 /// is kept. Cells that the ground of a Cartesian grid cuts count as whole ones.
 template <class Real>
 struct BinPacking {
+  static constexpr bool with_other_runs = true;
   GridView<Real> grid;
   const int* active;
   const CellParts* parts;
@@ -98,11 +101,11 @@ inline Packing packing_of(std::span<const CellParts> bins, double largest) {
 template <class Real, class Device>
 class PackingMeasure {
  public:
-  explicit PackingMeasure(const Device& device) : device_(device), parts_(device), sums_(device) {}
+  explicit PackingMeasure(const Device& device) : device_(device), parts_(device), sums_(device), room_(device) {}
 
-  /// The packing of points in a grid that was sorted for them; waits for the device.
+  /// The method starts to measure points in a grid that was sorted for them.
   template <class Grid>
-  Packing of(const ParticleView<Real>& points, Grid& grid) {
+  void start(const ParticleView<Real>& points, Grid& grid) {
     parts_.resize(static_cast<std::size_t>(grid.nodes()));
     parts_.fill_zero();
     sums_.resize(1);
@@ -111,8 +114,13 @@ class PackingMeasure {
     for_each_grouped(device_, points.count, grid.groups(), ScatterParts<Real>{grid.view(), points, parts_.data()});
     for_each(device_, grid.active_blocks() * block_columns,
              BinPacking<Real>{grid.view(), grid.active_list(), parts_.data(), sums->bins, &sums->most});
-    const std::vector<PackingSums> total = sums_.download();
-    return packing_of(total.front().bins, static_cast<double>(positive_from_bits(total.front().most)));
+    room_.copy_from(sums);
+  }
+  /// The packing that was measured; waits for the device.
+  Packing read() const {
+    synchronise(device_);
+    const PackingSums& total = *room_;
+    return packing_of(total.bins, static_cast<double>(positive_from_bits(total.most)));
   }
 
   /// The memory taken [bytes].
@@ -122,6 +130,7 @@ class PackingMeasure {
   Device device_;
   Buffer<CellParts, Device> parts_;
   Buffer<PackingSums, Device> sums_;
+  HostRoom<PackingSums, Device> room_;
 };
 
 }  // namespace talus::solver

@@ -12,6 +12,7 @@
 #include "solver/integrator/point_sums.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/host_room.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/parallel/sums.hpp"
 
@@ -25,15 +26,21 @@ class ParticleMeasures {
 
   /// The constructor takes the grid whose cells the maps have.
   ParticleMeasures(const Device& device, const GridShape& shape)
-      : device_(device), columns_(shape.columns), rows_(shape.rows), spacing_(shape.spacing), packing_(device) {}
+      : device_(device), columns_(shape.columns), rows_(shape.rows), spacing_(shape.spacing), packing_(device) {
+    totals_.resize(Energy::rows);
+    sums_.ticket();
+  }
 
-  /// The sums over `count` particles; waits for the device.
-  Energies energies(int count, const Energy& measure) {
+  /// The method starts the sums over `count` particles.
+  void start_energies(int count, const Energy& measure) {
     const ProfilePhase<Device> phase(device_, "records and frames");
-    constexpr int rows = Energy::rows;
-    totals_.resize(rows);
-    sum_each<rows>(device_, count, sums_, measure, KeepTotals<rows>{totals_.data()});
-    const std::vector<double> total = totals_.download();
+    sum_each<Energy::rows>(device_, count, sums_, measure, KeepTotals<Energy::rows>{totals_.data()});
+    room_.copy_from(reinterpret_cast<const Totals*>(totals_.data()));
+  }
+  /// The sums that were started last; waits for the device.
+  Energies energies() const {
+    synchronise(device_);
+    const double(&total)[Energy::rows] = (*room_).value;
     return {total[0], total[1], total[2], total[3], {total[4], total[5], total[6]}, total[7], total[8]};
   }
 
@@ -47,12 +54,14 @@ class ParticleMeasures {
     return result;
   }
 
-  /// How densely the particles are packed in a grid that was sorted for them; waits for the device.
+  /// The method starts to measure how densely the particles are packed in a grid that was sorted for them.
   template <class Grid>
-  Packing packing(const ParticleView<Real>& points, Grid& grid) {
+  void start_packing(const ParticleView<Real>& points, Grid& grid) {
     const ProfilePhase<Device> phase(device_, "records and frames");
-    return packing_.of(points, grid);
+    packing_.start(points, grid);
   }
+  /// The packing whose measure was started last; waits for the device.
+  Packing packing() const { return packing_.read(); }
 
   /// The method measures the volumes over the columns, for the maps of particles whose densities differ: mass does not
   /// give their thickness.
@@ -75,11 +84,13 @@ class ParticleMeasures {
     for_each_grouped(device_, points.count, groups, ScatterThickness<Real, Shape>{points, columns_, volumes.data()});
   }
 
+  using Totals = Terms<Energy::rows>;
   Device device_;
   int columns_, rows_;
   double spacing_;  ///< [m]
   Buffer<double, Device> totals_{device_}, thickness_{device_}, column_volumes_{device_};
   SumSpace<Device> sums_{device_};
+  HostRoom<Totals, Device> room_{device_};
   PackingMeasure<Real, Device> packing_;
 };
 

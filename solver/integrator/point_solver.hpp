@@ -16,6 +16,7 @@
 #include "solver/integrator/surroundings.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/atomics.hpp"
+#include "solver/parallel/recording.hpp"
 
 namespace talus::solver {
 
@@ -37,6 +38,7 @@ class PointSolver : public Solver {
         shaking_(device, scene.shaking),
         maps_(device, state.maps, settings.map_threshold),
         measures_(device, scene.grid),
+        measuring_(device, starts_with_others()),
         motion_(device) {
     points_.upload(state.points);
   }
@@ -68,12 +70,16 @@ class PointSolver : public Solver {
 
   /// The sums over the points; waits for the device.
   Energies energies() override {
-    return measures_.energies(points_.count(),
-                              {grid_.view(), points_.view(), materials_, settings_.gravity.acceleration, dilatant_});
+    if (!measured_) measuring_.repeat(1, [&] { start_measures(); });
+    measured_ = Device::is_gpu;
+    return measures_.energies();
   }
 
   /// How densely the points are packed; waits for the device.
-  Packing packing() override { return measures_.packing(points_.view(), grid_); }
+  Packing packing() override {
+    if (!measured_) measures_.start_packing(points_.view(), grid_);
+    return measures_.packing();
+  }
 
   /// The vertical thickness, h of (T25), [rows * columns] [m]; waits for the device.
   std::vector<double> thickness() override { return measures_.thickness(points_.view(), grid_.groups()); }
@@ -109,8 +115,18 @@ class PointSolver : public Solver {
   /// The method records the maps of speed and pressure from the motion that was summed up.
   void record_motion() { motion_.record(grid_, column_density(), maps_.view()); }
 
+  /// The method starts to measure what a record asks for: the energies, and where that is no work of the host's the
+  /// packing too.
+  void start_measures() {
+    measures_.start_energies(points_.count(),
+                             {grid_.view(), points_.view(), materials_, settings_.gravity.acceleration, dilatant_});
+    if constexpr (Device::is_gpu) measures_.start_packing(points_.view(), grid_);
+  }
+
   /// The method sorts the points and fits the grid to them; the `outflow_count` last ones are dropped.
   void fit(int outflow_count) {
+    measuring_.forget();
+    measured_ = false;
     grid_.fit(points_, outflow_count);
     surroundings_.contact().fit(grid_);
   }
@@ -127,6 +143,13 @@ class PointSolver : public Solver {
   static void note_rate(Clock& clock, double rate) {
     atomic_max_positive(&clock.rate_bits, static_cast<float>(rate));
     clock.halt = clock.request = running;
+  }
+
+  /// Whether what repeats may be started with that of other runs: it does not change with time, and may do a few steps
+  /// more than it was asked for.
+  bool starts_with_others() const {
+    return !settings_.deterministic && settings_.walls.empty() && settings_.loads.empty() &&
+           !settings_.materials.densities_differ;
   }
 
   /// The clock that a run goes on with from a state.
@@ -156,6 +179,8 @@ class PointSolver : public Solver {
   DeviceShaking<Device> shaking_;
   DeviceMaps<Device> maps_;
   ParticleMeasures<Real, Device, Shape> measures_;
+  Recording<Device> measuring_;  ///< of a record's measures
+  bool measured_ = false;        ///< energies and packing are known for the points as they are
   MotionMaps<Real, Device, Shape> motion_;
 };
 

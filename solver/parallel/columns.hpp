@@ -74,9 +74,9 @@ struct SharedColumn {
   int share;
   typename Kernel::Column column;
 
-  __device__ explicit SharedColumn(const Kernel& kernel)
+  __device__ SharedColumn(const Kernel& kernel, LaunchBlock at)
       : share(static_cast<int>(threadIdx.x) / columns),
-        column(kernel.locate(static_cast<int>(blockIdx.x * columns + threadIdx.x % columns))) {}
+        column(kernel.locate(at.index * columns + static_cast<int>(threadIdx.x) % columns)) {}
   /// The method calls f(k) for the layers that are this thread's.
   template <class F>
   __device__ void each_layer(F&& f) const {
@@ -97,25 +97,33 @@ struct SharedColumn {
   }
 };
 
+/// A block of threads for each block of columns, as it is launched.
 template <int columns, class Kernel>
-__global__ void run_columns(Kernel kernel) {
-  begin_kernel();
-  const SharedColumn<columns, Kernel> own(kernel);
-  const bool finishes = own.share == 0 && own.column.inside;
-  const typename Kernel::Sums sums = own.sums(kernel, finishes);
-  if (finishes) kernel.finish(own.column, sums);
-}
+struct EachColumn {
+  using Named = Kernel;
+  Kernel kernel;
+  __device__ void run(LaunchBlock at) const {
+    const SharedColumn<columns, Kernel> own(kernel, at);
+    const bool finishes = own.share == 0 && own.column.inside;
+    const typename Kernel::Sums sums = own.sums(kernel, finishes);
+    if (finishes) kernel.finish(own.column, sums);
+  }
+};
 
+/// The same for columns that are gone through twice.
 template <int columns, class Kernel>
-__global__ void run_columns_twice(Kernel kernel) {
-  begin_kernel();
-  const SharedColumn<columns, Kernel> own(kernel);
-  const typename Kernel::Sums sums = own.sums(kernel, own.column.inside);
-  typename Kernel::Pass pass;
-  if (own.column.inside) pass = kernel.between(own.column, sums);
-  __syncthreads();  // between() may look at nodes that another thread changes the second time
-  own.each_layer([&](int k) { kernel.again(own.column, pass, k); });
-}
+struct EachColumnTwice {
+  using Named = Kernel;
+  Kernel kernel;
+  __device__ void run(LaunchBlock at) const {
+    const SharedColumn<columns, Kernel> own(kernel, at);
+    const typename Kernel::Sums sums = own.sums(kernel, own.column.inside);
+    typename Kernel::Pass pass;
+    if (own.column.inside) pass = kernel.between(own.column, sums);
+    __syncthreads();  // between() may look at nodes that another thread changes the second time
+    own.each_layer([&](int k) { kernel.again(own.column, pass, k); });
+  }
+};
 }  // namespace detail
 
 /// On a GPU eight threads share a column's layers both times.
@@ -123,8 +131,8 @@ template <int columns, class Kernel>
 void for_each_column_twice(const GpuDevice& device, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
   const KernelTime<GpuDevice> time(device, kernel, blocks * columns);
-  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_columns_twice<columns, Kernel>, blocks,
-                     detail::column_shares * columns, kernel);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, detail::column_shares * columns,
+                     detail::EachColumnTwice<columns, Kernel>{kernel});
 }
 
 /// On a GPU eight threads share a column's layers; their sums are added in one order.
@@ -132,8 +140,8 @@ template <int columns, class Kernel>
 void for_each_column(const GpuDevice& device, int blocks, const Kernel& kernel) {
   if (blocks <= 0) return;
   const KernelTime<GpuDevice> time(device, kernel, blocks * columns);
-  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_columns<columns, Kernel>, blocks,
-                     detail::column_shares * columns, kernel);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, detail::column_shares * columns,
+                     detail::EachColumn<columns, Kernel>{kernel});
 }
 #endif
 

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/host_room.hpp"
 #include "solver/parallel/loop_order.hpp"
 #include "solver/parallel/pace.hpp"
 
@@ -24,6 +25,8 @@ void* allocate(const CpuDevice&, std::size_t bytes) {
   return memory;
 }
 void free(const CpuDevice&, void* memory) noexcept { std::free(memory); }
+void* lend_host(const CpuDevice& device, std::size_t bytes) { return allocate(device, bytes); }
+void give_back_host(const CpuDevice& device, void* memory, std::size_t) noexcept { free(device, memory); }
 void upload(const CpuDevice&, void* to, const void* host, std::size_t bytes) { std::memcpy(to, host, bytes); }
 void download(const CpuDevice&, void* host, const void* from, std::size_t bytes) { std::memcpy(host, from, bytes); }
 void fill_zero(const CpuDevice&, void* memory, std::size_t bytes) { std::memset(memory, 0, bytes); }

@@ -12,6 +12,7 @@
 #include "solver/parallel/atomics.hpp"
 #include "solver/parallel/buffer.hpp"
 #include "solver/parallel/device.hpp"
+#include "solver/parallel/launch.hpp"
 #include "solver/parallel/macros.hpp"
 #include "solver/parallel/profile.hpp"
 
@@ -80,51 +81,30 @@ inline constexpr int points_that_keep_a_gpu_busy = 65536;
 
 #if defined(__CUDACC__)
 namespace detail {
-/// Every kernel's first words. From compute capability 9.0 on a kernel comes onto the device while the one before it is
-/// ending (programmatic dependent launch), and waits here until that has written all it had to; its own successor may
-/// come then.
-__device__ inline void begin_kernel() {
-#if __CUDA_ARCH__ >= 900
-  asm volatile("griddepcontrol.wait;" ::: "memory");
-  asm volatile("griddepcontrol.launch_dependents;");
-#endif
-}
-
-/// Starts a kernel that opens with begin_kernel().
-template <class... Parameters>
-void gpu_launch(const GpuDevice& device, const char* where, void (*kernel)(Parameters...), int blocks, int threads,
-                const std::type_identity_t<Parameters>&... arguments) {
-  gpu_select(device);
-  cudaLaunchAttribute early{};
-  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  early.val.programmaticStreamSerializationAllowed = 1;
-  cudaLaunchConfig_t config{};
-  config.gridDim = dim3(static_cast<unsigned>(blocks));
-  config.blockDim = dim3(static_cast<unsigned>(threads));
-  config.stream = device.stream();
-  config.attrs = &early;
-  constexpr int small = 200000;  // threads; with more, those that wait are in the way
-  config.numAttrs = gpu_starts_early(device) && blocks * static_cast<long>(threads) < small ? 1 : 0;
-  static_cast<void>(cudaLaunchKernelEx(&config, kernel, arguments...));  // gpu_check_launch reports it
-  gpu_check_launch(where);
-}
-
 /// Threads of a block: few where there is little to do, so that every multiprocessor gets some of it.
-inline int threads_for(int count) { return count < 65536 ? 32 : 128; }
+inline int threads_for(bool busy) { return busy ? 128 : 32; }
 
+/// A thread for each index, as it is launched.
 template <class Kernel>
-__global__ void run_kernel(int count, Kernel kernel) {
-  begin_kernel();
-  const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < count) kernel(i);
-}
+struct EachIndex {
+  using Named = Kernel;
+  int count;
+  Kernel kernel;
+  __device__ void run(LaunchBlock at) const {
+    const int i = at.index * static_cast<int>(blockDim.x) + static_cast<int>(threadIdx.x);
+    if (i < count) kernel(i);
+  }
+};
 
 /// The same in as many registers as let this number of blocks of 128 threads share a multiprocessor.
 template <int blocks, class Kernel>
-__global__ __launch_bounds__(128, blocks) void run_dense(int count, Kernel kernel) {
-  begin_kernel();
-  const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < count) kernel(i);
+struct EachIndexDensely : EachIndex<Kernel> {
+  static constexpr int most_threads = 128, least_blocks = blocks;
+};
+
+/// Whether that many threads, with those of other runs where they are started as one, keep the GPU busy.
+inline bool is_busy_with(const GpuDevice& device, int count) {
+  return count >= points_that_keep_a_gpu_busy || gpu_kept(device) != nullptr;
 }
 }  // namespace detail
 
@@ -134,15 +114,15 @@ template <class Kernel>
 void for_each(const GpuDevice& device, int count, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<GpuDevice> time(device, kernel, count);
+  const bool busy = detail::is_busy_with(device, count);
+  const int threads = detail::threads_for(busy), blocks = (count + threads - 1) / threads;
   if constexpr (requires { Kernel::dense; }) {
-    if (Kernel::dense > 0 && count >= points_that_keep_a_gpu_busy) {
-      return detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_dense<Kernel::dense, Kernel>,
-                                (count + 127) / 128, 128, count, kernel);
+    if (Kernel::dense > 0 && busy) {
+      return detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
+                                detail::EachIndexDensely<Kernel::dense, Kernel>{{count, kernel}});
     }
   }
-  const int threads = detail::threads_for(count);
-  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_kernel<Kernel>, (count + threads - 1) / threads, threads,
-                     count, kernel);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads, detail::EachIndex<Kernel>{count, kernel});
 }
 
 /// One thread: the points of a block, one after the other.

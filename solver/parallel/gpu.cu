@@ -11,6 +11,7 @@
 
 #include "common/error.hpp"
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/host_room.hpp"
 
 #if defined(__CUDACC__)
 #include "solver/parallel/gpu_state.hpp"
@@ -19,6 +20,13 @@ namespace talus {
 namespace {
 
 __global__ void probe() {}
+
+/// One thread: one word.
+struct ClearWord {
+  static constexpr bool with_other_runs = true;
+  std::uint32_t* words;
+  TALUS_HD void operator()(int i) const { words[i] = 0; }
+};
 
 /// This function lets the GPU's memory pool keep what is freed for the next allocation of this process, whichever
 /// stream asks: cudaMalloc and cudaFree wait for all streams.
@@ -43,6 +51,7 @@ void check_cuda(cudaError_t code, const char* what) {
 GpuState::GpuState(int gpu) : index(gpu) {
   check_cuda(cudaSetDevice(index), "cudaSetDevice");
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "stream");
+  check_cuda(cudaEventCreateWithFlags(&ready, cudaEventDisableTiming), "event");
   keep_memory(index);
   cudaFuncAttributes attributes;  // code made for older devices does not wait
   starts_early = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
@@ -61,17 +70,22 @@ GpuState::~GpuState() {
   scratch.reset();
   for (cudaEvent_t event : free_marks) (void)cudaEventDestroy(event);
   if (locked.memory) (void)cudaFreeHost(locked.memory);
+  for (const auto& [bytes, room] : host_rooms) (void)cudaFreeHost(room);
+  (void)cudaEventDestroy(ready);
   (void)cudaStreamDestroy(stream);
 }
 
-void GpuState::select() const {
+void GpuState::select() {
+  is_idle = false;
   int selected = -1;
   if (cudaGetDevice(&selected) != cudaSuccess || selected != index) check_cuda(cudaSetDevice(index), "cudaSetDevice");
 }
 
 void GpuState::wait(const char* what) {
+  if (is_idle) return;
   select();
   check_cuda(cudaStreamSynchronize(stream), what);
+  is_idle = true;
   locked.used = LockedMemory::few;
 }
 
@@ -128,7 +142,8 @@ void free(const GpuDevice& device, void* memory) noexcept {
 
 void upload(const GpuDevice& device, void* to, const void* host, std::size_t bytes) {
   GpuState& state = device.state();
-  if (state.recording) throw std::logic_error("an upload within a recording would be repeated with what it was then");
+  if (state.recording || state.kept)
+    throw std::logic_error("an upload within a recording would be repeated with what it was then");
   state.select();
   LockedMemory& locked = state.locked;
   if (!locked.memory || bytes > LockedMemory::few) {
@@ -144,6 +159,7 @@ void upload(const GpuDevice& device, void* to, const void* host, std::size_t byt
 
 void download(const GpuDevice& device, void* host, const void* from, std::size_t bytes) {
   GpuState& state = device.state();
+  if (state.kept) throw std::logic_error("a download within a list would come before what it waits for");
   state.select();
   const bool by_locked = state.locked.memory && bytes <= LockedMemory::few;
   void* const to = by_locked ? state.locked.memory : host;
@@ -153,8 +169,30 @@ void download(const GpuDevice& device, void* host, const void* from, std::size_t
 }
 
 void fill_zero(const GpuDevice& device, void* memory, std::size_t bytes) {
+  if (device.state().kept)  // memory of a device begins and ends with whole words
+    return for_each(device, static_cast<int>(bytes / sizeof(std::uint32_t)),
+                    ClearWord{static_cast<std::uint32_t*>(memory)});
   device.state().select();
   check_cuda(cudaMemsetAsync(memory, 0, bytes, device.stream()), "fill");
+}
+
+void* lend_host(const GpuDevice& device, std::size_t bytes) {
+  GpuState& state = device.state();
+  if (const auto free = state.host_rooms.find(bytes); free != state.host_rooms.end()) {
+    void* const memory = free->second;
+    state.host_rooms.erase(free);
+    return memory;
+  }
+  state.select();
+  void* memory = nullptr;
+  check_cuda(cudaMallocHost(&memory, bytes), "cudaMallocHost");
+  return memory;
+}
+
+void give_back_host(const GpuDevice& device, void* memory, std::size_t bytes) noexcept {
+  (void)cudaSetDevice(device.index());
+  (void)cudaStreamSynchronize(device.stream());
+  device.state().host_rooms.emplace(bytes, memory);
 }
 
 void gpu_select(const GpuDevice& device) { device.state().select(); }
@@ -244,6 +282,8 @@ void free(const GpuDevice&, void*) noexcept {}
 void upload(const GpuDevice&, void*, const void*, std::size_t) { absent(); }
 void download(const GpuDevice&, void*, const void*, std::size_t) { absent(); }
 void fill_zero(const GpuDevice&, void*, std::size_t) { absent(); }
+void* lend_host(const GpuDevice&, std::size_t) { absent(); }
+void give_back_host(const GpuDevice&, void*, std::size_t) noexcept {}
 void gpu_select(const GpuDevice&) { absent(); }
 void gpu_check_launch(const char*) {}
 bool gpu_starts_early(const GpuDevice&) { return false; }

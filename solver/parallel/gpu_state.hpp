@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "solver/parallel/buffer.hpp"
+#include "solver/parallel/launch_list.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/parallel/sums.hpp"
+#include "solver/parallel/together.hpp"
 
 namespace talus {
 
@@ -77,16 +79,21 @@ struct GpuState {
   GpuState& operator=(const GpuState&) = delete;
   ~GpuState();
 
-  /// The method makes this GPU the one that this thread's CUDA calls mean.
-  void select() const;
+  /// The method makes this GPU the one that this thread's CUDA calls mean, and notes that it gets work.
+  void select();
   /// The method waits for the stream.
   void wait(const char* what);
 
   int index;
   cudaStream_t stream = nullptr;
   bool starts_early = false, recording = false;
+  bool is_idle = true;                 ///< nothing was started on the stream since the host waited for it
+  LaunchList* kept = nullptr;          ///< takes what would be started
+  std::shared_ptr<Together> together;  ///< the runs beside which it starts what it repeats; or null
+  cudaEvent_t ready = nullptr;         ///< for them: what was started on the stream is done
   LockedMemory locked;
-  std::vector<cudaEvent_t> free_marks;  ///< events that nobody waits for
+  std::multimap<std::size_t, void*> host_rooms;  ///< page-locked memory that nobody has, by its size [bytes]
+  std::vector<cudaEvent_t> free_marks;           ///< events that nobody waits for
   Profile profile;
   std::unique_ptr<GpuScratch> scratch;
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/together.hpp"
 
 namespace talus {
 
@@ -20,21 +21,50 @@ class Recording;
 template <>
 class Recording<CpuDevice> {
  public:
-  explicit Recording(const CpuDevice&) {}
+  explicit Recording(const CpuDevice&, bool = false) {}
   /// The method does body() as often as `times`.
   template <class Body>
   void repeat(int times, const Body& body) {
     for (int t = 0; t < times; ++t) body();
   }
+  /// The same between begin() and end().
+  template <class Body, class Begin, class End>
+  void repeat(int times, const Body& body, const Begin& begin, const End& end) {
+    begin();
+    repeat(times, body);
+    end();
+  }
+  /// Whether the work is started with that of other runs.
+  static constexpr bool has_company() { return false; }
   /// The method does nothing: there is no recording.
   void forget() {}
 };
 
-/// On a GPU work is recorded as a CUDA graph, and started as a whole from the second time on.
+namespace detail {
+/// The runs beside which the device starts what it repeats; null where it starts it alone.
+Together* gpu_together(const GpuDevice& device);
+/// What is started on the device goes into the list as long as this lives, and is not done.
+class IntoList {
+ public:
+  IntoList(const GpuDevice& device, LaunchList& list);
+  ~IntoList();
+  IntoList(const IntoList&) = delete;
+  IntoList& operator=(const IntoList&) = delete;
+
+ private:
+  GpuDevice device_;
+};
+}  // namespace detail
+
+/// On a GPU work is recorded as a CUDA graph, and started as a whole from the second time on; or as a list of kernels
+/// that are started with those of other runs, where the device shares its GPU with some (share_starts()).
 template <>
 class Recording<GpuDevice> {
  public:
-  explicit Recording(GpuDevice device) : device_(std::move(device)) {}
+  /// With `with_others` the work may be started with that of other runs: it does nothing but start kernels and fill
+  /// with zeros.
+  explicit Recording(GpuDevice device, bool with_others = false)
+      : device_(std::move(device)), with_others_(with_others) {}
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
   ~Recording() {
@@ -47,6 +77,26 @@ class Recording<GpuDevice> {
   /// is, so that buffers find their sizes.
   template <class Body>
   void repeat(int times, const Body& body) {
+    repeat(
+        times, body, [] {}, [] {});
+  }
+  /// The same between begin() and end(), each done once. With others, body() may be done more often than `times`.
+  template <class Body, class Begin, class End>
+  void repeat(int times, const Body& body, const Begin& begin, const End& end) {
+    if (shares(body, begin, end)) return detail::gpu_together(device_)->run(device_, work_, times);
+    begin();
+    repeat_alone(times, body);
+    end();
+    begun_ = begun_ || times > 0;
+  }
+  /// Whether the work is started with that of other runs, where all of it can be.
+  bool has_company() const { return with_others_ && detail::gpu_together(device_) && !device_.profile().on(); }
+  /// The method gives up the recording, because arguments have changed.
+  void forget() { recorded_ = listed_ = false; }
+
+ private:
+  template <class Body>
+  void repeat_alone(int times, const Body& body) {
     const bool measured = device_.profile().with_kernels();
     if (marked_ != measured) recorded_ = false;
     if (!recorded_ && times > 0) {
@@ -57,10 +107,23 @@ class Recording<GpuDevice> {
     if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
   }
-  /// The method gives up the recording, because arguments have changed.
-  void forget() { recorded_ = false; }
-
- private:
+  /// Whether the work is done with that of others; it is listed where it was not since it was forgotten.
+  template <class Body, class Begin, class End>
+  bool shares(const Body& body, const Begin& begin, const End& end) {
+    if (!begun_ || !has_company()) return false;
+    if (!listed_) {
+      list(work_.begin, begin);
+      list(work_.step, body);
+      list(work_.end, end);
+      listed_ = true;
+    }
+    return work_.is_whole();
+  }
+  template <class Body>
+  void list(LaunchList& list, const Body& body) {
+    const detail::IntoList into(device_, list);
+    body();
+  }
   template <class Body>
   void record(const Body& body) {
     Profile& profile = device_.profile();
@@ -92,9 +155,12 @@ class Recording<GpuDevice> {
   }
 
   GpuDevice device_;
+  bool with_others_;
   void* graph_ = nullptr;
   std::vector<Profile::Mark> marks_;  ///< of its kernels, under --profile
   bool recorded_ = false, marked_ = false;
+  SharedWork work_;
+  bool begun_ = false, listed_ = false;  ///< the work was done once as it is; it stands in the lists
 };
 
 }  // namespace talus

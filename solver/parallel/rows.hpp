@@ -45,21 +45,25 @@ namespace detail {
 
 /// A warp for each row, so that its loads are under way together.
 template <int parts, class Kernel>
-__global__ void sum_row(int count, Kernel kernel) {
-  begin_kernel();
-  constexpr int warp_size = 32;
-  const int i = static_cast<int>((blockIdx.x * blockDim.x + threadIdx.x) / warp_size),
-            lane = static_cast<int>(threadIdx.x % warp_size);
-  if (i >= count || is_idle(kernel)) return;
-  Vec3<double> sum{};
-  for (int part = lane; part < parts; part += warp_size) sum += kernel.term(i, part);
-  for (unsigned apart = warp_size / 2; apart > 0; apart /= 2) {
-    sum.x += __shfl_down_sync(0xffffffffu, sum.x, apart);
-    sum.y += __shfl_down_sync(0xffffffffu, sum.y, apart);
-    sum.z += __shfl_down_sync(0xffffffffu, sum.z, apart);
+struct EachRow {
+  using Named = Kernel;
+  int count;
+  Kernel kernel;
+  __device__ void run(LaunchBlock at) const {
+    constexpr int warp_size = 32;
+    const int thread = static_cast<int>(threadIdx.x), lane = thread % warp_size,
+              i = (at.index * static_cast<int>(blockDim.x) + thread) / warp_size;
+    if (i >= count || is_idle(kernel)) return;
+    Vec3<double> sum{};
+    for (int part = lane; part < parts; part += warp_size) sum += kernel.term(i, part);
+    for (unsigned apart = warp_size / 2; apart > 0; apart /= 2) {
+      sum.x += __shfl_down_sync(0xffffffffu, sum.x, apart);
+      sum.y += __shfl_down_sync(0xffffffffu, sum.y, apart);
+      sum.z += __shfl_down_sync(0xffffffffu, sum.z, apart);
+    }
+    if (lane == 0) kernel.finish(i, sum);
   }
-  if (lane == 0) kernel.finish(i, sum);
-}
+};
 
 }  // namespace detail
 
@@ -69,8 +73,8 @@ void sum_rows(const GpuDevice& device, int count, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<GpuDevice> time(device, kernel, count);
   constexpr int threads = 128, each = threads / 32;
-  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::sum_row<parts, Kernel>, (count + each - 1) / each, threads,
-                     count, kernel);
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, (count + each - 1) / each, threads,
+                     detail::EachRow<parts, Kernel>{count, kernel});
 }
 #endif
 

@@ -107,32 +107,41 @@ __device__ void sum_block(double (&sums)[static_cast<std::size_t>(K)]) {
   __syncthreads();
 }
 
+/// The sum of a body over all indices, as it is launched.
 template <int K, class Body, class Finish>
-__global__ void sum_kernel(int count, Body body, Finish finish, double* partial, unsigned* ticket) {
-  begin_kernel();
-  double sums[K] = {};
-  const int stride = static_cast<int>(gridDim.x * blockDim.x);
-  for (int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); i < count; i += stride) {
-    const Terms<K> terms = body(i);
-    for (int k = 0; k < K; ++k) sums[k] += terms.value[k];
-  }
-  sum_block<K>(sums);
-  __shared__ bool last;
-  if (threadIdx.x == 0) {
-    for (int k = 0; k < K; ++k) partial[k * gridDim.x + blockIdx.x] = sums[k];
+struct SumEach {
+  using Named = Body;
+  int count;
+  Body body;
+  Finish finish;
+  double* partial;
+  unsigned* ticket;
+  __device__ void run(LaunchBlock at) const {
+    double sums[K] = {};
+    const int threads = static_cast<int>(blockDim.x), thread = static_cast<int>(threadIdx.x);
+    for (int i = at.index * threads + thread; i < count; i += at.count * threads) {
+      const Terms<K> terms = body(i);
+      for (int k = 0; k < K; ++k) sums[k] += terms.value[k];
+    }
+    sum_block<K>(sums);
+    __shared__ bool last;
+    if (thread == 0) {
+      for (int k = 0; k < K; ++k) partial[k * at.count + at.index] = sums[k];
+      __threadfence();
+      const auto final = static_cast<unsigned>(at.count - 1);
+      last = atomicInc(ticket, final) == final;
+    }
+    __syncthreads();
+    if (!last) return;
     __threadfence();
-    last = atomicInc(ticket, gridDim.x - 1) == gridDim.x - 1;
+    for (int k = 0; k < K; ++k) {
+      sums[k] = 0;
+      for (int b = thread; b < at.count; b += threads) sums[k] += __ldcg(&partial[k * at.count + b]);
+    }
+    sum_block<K>(sums);
+    if (thread == 0) finish(static_cast<const double*>(sums));
   }
-  __syncthreads();
-  if (!last) return;
-  __threadfence();
-  for (int k = 0; k < K; ++k) {
-    sums[k] = 0;
-    for (unsigned b = threadIdx.x; b < gridDim.x; b += blockDim.x) sums[k] += __ldcg(&partial[k * gridDim.x + b]);
-  }
-  sum_block<K>(sums);
-  if (threadIdx.x == 0) finish(static_cast<const double*>(sums));
-}
+};
 
 }  // namespace detail
 
@@ -143,8 +152,12 @@ void sum_each(const GpuDevice& device, int count, SumSpace<GpuDevice>& space, co
                 threads = 256;  // the last block adds up what all have found: few blocks, many threads
   const int blocks = std::clamp((count + threads - 1) / threads, 1, most_blocks);
   const KernelTime<GpuDevice> time(device, body, count);
-  detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::sum_kernel<K, Body, Finish>, blocks, threads, count, body,
-                     finish, space.partial(K * most_blocks), space.ticket());
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
+                     detail::SumEach<K, Body, Finish>{.count = count,
+                                                      .body = body,
+                                                      .finish = finish,
+                                                      .partial = space.partial(K * most_blocks),
+                                                      .ticket = space.ticket()});
 }
 #endif
 

@@ -150,11 +150,12 @@ inline constexpr int lane_bits = 5, layer_bits = 20;
 /// Reads the lane's point into shared memory. Returns a key that orders the points by their first node; that of a lane
 /// whose point does not count is behind all others.
 template <int each, class Kernel>
-__device__ __forceinline__ std::uint64_t read_point(int count, const Kernel& kernel, const TileLane<each, Kernel>& at,
+__device__ __forceinline__ std::uint64_t read_point(int count, int block, const Kernel& kernel,
+                                                    const TileLane<each, Kernel>& at,
                                                     TileMemory<each, Kernel>& memory) {
   const std::uint64_t nothing = ~std::uint64_t{0} << lane_bits | static_cast<unsigned>(at.lane());
   if (at.lane() >= each) return nothing;
-  const int p = (static_cast<int>(blockIdx.x) * tile_warps + at.warp()) * each + at.lane();
+  const int p = (block * tile_warps + at.warp()) * each + at.lane();
   if (p >= count || !kernel.counts(p)) return nothing;
   const auto& source = *new (&memory.source(at.first_source + at.lane())) typename Kernel::Source(kernel, p);
   for (int q = 0; q < Kernel::columns_each; ++q)
@@ -244,12 +245,12 @@ __device__ __forceinline__ void add_alone(const Kernel& kernel, const TileLane<e
 /// column in registers for as long as the next point has the same nodes. Where its nodes are those a layer up, only the
 /// lowest layer is passed on.
 template <int each, class Kernel>
-__device__ void reduce_tile(int count, const Kernel& kernel) {
+__device__ void reduce_tile(int count, int block, const Kernel& kernel) {
   using Sizes = TileSizes<each, Kernel>;
   constexpr unsigned all = 0xffffffffu;
   __shared__ TileMemory<each, Kernel> memory;
   const TileLane<each, Kernel> at;
-  const std::uint64_t key = read_point<each>(count, kernel, at, memory);
+  const std::uint64_t key = read_point<each>(count, block, kernel, at, memory);
   if (__all_sync(all, key >> 63)) return;
   const TileOrder order = order_points(key);
   const int first = at.team() * Sizes::share;
@@ -276,67 +277,73 @@ __device__ void reduce_tile(int count, const Kernel& kernel) {
   }
 }
 
+/// A block of threads for two tiles of points, as it is launched.
 template <int each, class Kernel>
-__global__ void run_tiles(int count, Kernel kernel) {
-  begin_kernel();
-  reduce_tile<each>(count, kernel);
-}
+struct EachTile {
+  using Named = Kernel;
+  int count;
+  Kernel kernel;
+  __device__ void run(LaunchBlock at) const { reduce_tile<each>(count, at.index, kernel); }
+};
 
 /// The same in as many registers as let this number of blocks share a multiprocessor.
 template <int each, int blocks, class Kernel>
-__global__ __launch_bounds__(tile_warps* warp_size, blocks) void run_tiles_densely(int count, Kernel kernel) {
-  begin_kernel();
-  reduce_tile<each>(count, kernel);
-}
+struct EachTileDensely : EachTile<each, Kernel> {
+  static constexpr int most_threads = tile_warps * warp_size, least_blocks = blocks;
+};
 
 template <int each, class Kernel>
 void start_tiles(const GpuDevice& device, int count, const Kernel& kernel) {
-  constexpr int points = tile_warps * each;
+  constexpr int points = tile_warps * each, threads = tile_warps * warp_size;
   const int blocks = (count + points - 1) / points;
   if constexpr (requires { Kernel::tiles_at_once; }) {
     if constexpr (Kernel::tiles_at_once > 0) {
-      return gpu_launch(device, __PRETTY_FUNCTION__, run_tiles_densely<each, Kernel::tiles_at_once, Kernel>, blocks,
-                        tile_warps * warp_size, count, kernel);
+      return gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
+                        EachTileDensely<each, Kernel::tiles_at_once, Kernel>{{count, kernel}});
     }
   }
-  gpu_launch(device, __PRETTY_FUNCTION__, run_tiles<each, Kernel>, blocks, tile_warps * warp_size, count, kernel);
+  gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads, EachTile<each, Kernel>{count, kernel});
 }
 
 /// A warp takes the points of a block of columns one after the other, a lane for every column of nodes.
 template <class Kernel>
-__global__ void run_tiles_in_order(const PointGroups::Range* ranges, Kernel kernel) {
-  begin_kernel();
-  using Source = typename Kernel::Source;
-  __shared__ alignas(16) unsigned char room[warp_size * sizeof(Source)];
-  __shared__ bool counts[warp_size];
-  auto* const tile = reinterpret_cast<Source*>(room);
-  const int begin = ranges[blockIdx.x].first, end = ranges[blockIdx.x].second, lane = static_cast<int>(threadIdx.x);
-  for (int first = begin; first < end; first += warp_size) {
-    __syncwarp();
-    const int p = first + lane;
-    counts[lane] = p < end && kernel.counts(p);
-    if (counts[lane]) new (tile + lane) Source(kernel, p);
-    __syncwarp();
-    for (int q = 0; q < warp_size; ++q) {
-      if (!counts[q]) continue;
-      if (lane < Kernel::columns_each) {
-        typename Kernel::Sums sums[Kernel::deep];
-        kernel.add(tile[q], lane, sums);
-        const int column = kernel.column_of(tile[q], lane);
-        for (int c = 0; c < Kernel::deep; ++c) {
-          if (!kernel.owns(kernel.nodes_of(tile[q]).k, c)) continue;
-          typename Kernel::Number parts[Kernel::parts];
-          kernel.store(sums[c], parts);
-          const int node = kernel.node_in(column, kernel.nodes_of(tile[q]).k, c);
-          for (int part = 0; part < Kernel::parts; ++part) {
-            if (has_part(kernel, part)) *kernel.part(node, part) += parts[part];
+struct EachTileInOrder {
+  using Named = Kernel;
+  const PointGroups::Range* ranges;
+  Kernel kernel;
+  __device__ void run(LaunchBlock at) const {
+    using Source = typename Kernel::Source;
+    __shared__ alignas(16) unsigned char room[warp_size * sizeof(Source)];
+    __shared__ bool counts[warp_size];
+    auto* const tile = reinterpret_cast<Source*>(room);
+    const int begin = ranges[at.index].first, end = ranges[at.index].second, lane = static_cast<int>(threadIdx.x);
+    for (int first = begin; first < end; first += warp_size) {
+      __syncwarp();
+      const int p = first + lane;
+      counts[lane] = p < end && kernel.counts(p);
+      if (counts[lane]) new (tile + lane) Source(kernel, p);
+      __syncwarp();
+      for (int q = 0; q < warp_size; ++q) {
+        if (!counts[q]) continue;
+        if (lane < Kernel::columns_each) {
+          typename Kernel::Sums sums[Kernel::deep];
+          kernel.add(tile[q], lane, sums);
+          const int column = kernel.column_of(tile[q], lane);
+          for (int c = 0; c < Kernel::deep; ++c) {
+            if (!kernel.owns(kernel.nodes_of(tile[q]).k, c)) continue;
+            typename Kernel::Number parts[Kernel::parts];
+            kernel.store(sums[c], parts);
+            const int node = kernel.node_in(column, kernel.nodes_of(tile[q]).k, c);
+            for (int part = 0; part < Kernel::parts; ++part) {
+              if (has_part(kernel, part)) *kernel.part(node, part) += parts[part];
+            }
           }
         }
+        __syncwarp();
       }
-      __syncwarp();
     }
   }
-}
+};
 
 }  // namespace detail
 
@@ -349,15 +356,15 @@ void scatter_points(const GpuDevice& device, int count, const PointGroups& group
   if (groups.in_order) {
     for (const auto& ranges : groups.on_gpu) {
       if (ranges.size() == 0) continue;
-      detail::gpu_launch(device, __PRETTY_FUNCTION__, detail::run_tiles_in_order<Kernel>,
-                         static_cast<int>(ranges.size()), detail::warp_size, ranges.data(), kernel);
+      detail::gpu_launch(device, __PRETTY_FUNCTION__, static_cast<int>(ranges.size()), detail::warp_size,
+                         detail::EachTileInOrder<Kernel>{ranges.data(), kernel});
     }
     return;
   }
   constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <=
                         65536;  // two blocks of 32 points a warp, and room beside them
   if constexpr (fits) {
-    if (count >= points_that_keep_a_gpu_busy) return detail::start_tiles<32>(device, count, kernel);
+    if (detail::is_busy_with(device, count)) return detail::start_tiles<32>(device, count, kernel);
   }
   detail::start_tiles<16>(device, count, kernel);
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "common/domain/scale_release.hpp"
+#include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/member_run.hpp"
 #include "solver/run/simulation.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
@@ -14,13 +15,6 @@
 
 namespace talus::solver::testing {
 namespace {
-
-/// Devices of a place, one for each member in flight.
-std::vector<AnyDevice> devices(On on, int count) {
-  std::vector<AnyDevice> devices;
-  for (int k = 0; k < count; ++k) devices.push_back(make_device(on));
-  return devices;
-}
 
 void expect_same(const std::vector<double>& a, const std::vector<double>& b, const char* name) {
   ASSERT_EQ(a.size(), b.size());
@@ -120,8 +114,8 @@ TEST_P(RunMembers, counts_the_same_however_many_run_at_a_time) {
   const SmallEnsemble ensemble;
   const Members members = ensemble.members();
   EnsembleCounts one = ensemble.counts(), four = ensemble.counts();
-  EXPECT_TRUE(run_members(members, one, {.devices = devices(GetParam(), 1)}));
-  EXPECT_TRUE(run_members(members, four, {.devices = devices(GetParam(), 4)}));
+  EXPECT_TRUE(run_members(members, one, {.devices = devices_for(1, GetParam())}));
+  EXPECT_TRUE(run_members(members, four, {.devices = devices_for(4, GetParam())}));
   EXPECT_EQ(one.count(MemberState::counted), 6);
   expect_same(one, four);
 }
@@ -130,9 +124,9 @@ TEST_P(RunMembers, in_parts_add_up_to_the_bits_of_the_whole) {
   const SmallEnsemble ensemble;
   const Members members = ensemble.members();
   EnsembleCounts whole = ensemble.counts(), first = ensemble.counts({0, 2}), rest = ensemble.counts({2, 6});
-  run_members(members, whole, {.devices = devices(GetParam(), 2)});
-  run_members(members, rest, {.devices = devices(GetParam(), 2)});
-  run_members(members, first, {.devices = devices(GetParam(), 1)});
+  run_members(members, whole, {.devices = devices_for(2, GetParam())});
+  run_members(members, rest, {.devices = devices_for(2, GetParam())});
+  run_members(members, first, {.devices = devices_for(1, GetParam())});
   const EnsembleCounts sum = merged({rest, first}, {"rest", "first"});
   expect_same(whole, sum);
   EXPECT_GT(whole.maps[0].sum.at(whole.cells.find(20, 8)), 0) << "something was counted";
@@ -144,7 +138,7 @@ TEST_P(RunMembers, leaves_out_and_names_a_member_that_fails) {
   table.columns.push_back({"solve.material.youngs_modulus_Pa", {1e6, 1e6, 10, 1e6, 1e6, 1e6}, {}});
   const SmallEnsemble ensemble(table);
   EnsembleCounts counts = ensemble.counts();
-  const bool is_whole = run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  const bool is_whole = run_members(ensemble.members(), counts, {.devices = devices_for(2, GetParam())});
   EXPECT_TRUE(is_whole);
   EXPECT_EQ(counts.count(MemberState::counted), 5);
   ASSERT_EQ(counts.failures.size(), 1u);
@@ -159,7 +153,7 @@ TEST_P(RunMembers, say_what_the_recipe_insists_on_in_the_words_of_the_first_that
   table.columns.push_back({"solve.material.youngs_modulus_Pa", {1e6, 1e6, 2e4, 1e6, 1e4, 1e6}, {}});
   const SmallEnsemble ensemble(table, "accept = [\"weight-strain\", \"slow-waves\"]\n");
   EnsembleCounts counts = ensemble.counts();
-  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 3)});
+  run_members(ensemble.members(), counts, {.devices = devices_for(3, GetParam())});
   const std::string words = fact(counts.provenance, "accepted.weight-strain");
   EXPECT_NE(words.find("in member 2"), std::string::npos) << words;
   EXPECT_NE(words.find("under its own weight"), std::string::npos) << words;
@@ -168,7 +162,7 @@ TEST_P(RunMembers, say_what_the_recipe_insists_on_in_the_words_of_the_first_that
 TEST_P(RunMembers, keeps_what_each_member_warns_of) {
   const SmallEnsemble ensemble(small_table(), "accept = [\"slow-waves\"]\ninitial_velocity_m_s = [150, 0, 0]\n");
   EnsembleCounts counts = ensemble.counts();
-  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  run_members(ensemble.members(), counts, {.devices = devices_for(2, GetParam())});
   ASSERT_EQ(counts.count(MemberState::counted), 6);
   ASSERT_GE(counts.warnings.size(), 6u);
   for (std::int64_t k = 0; k < 6; ++k)
@@ -185,7 +179,7 @@ TEST_P(RunMembers, leaves_out_a_member_whose_scene_the_recipe_does_not_suit) {
   table.columns.back().values = {1, 1, 0.5, 1, 1, 1};
   const SmallEnsemble ensemble(table, "[[solve.load]]\nbox_m = [18, 26, 4, 12, 0.6, 1]\nforce_N = [10, 0, 0]\n");
   EnsembleCounts counts = ensemble.counts();
-  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  run_members(ensemble.members(), counts, {.devices = devices_for(2, GetParam())});
   EXPECT_EQ(counts.count(MemberState::counted), 5);
   ASSERT_EQ(counts.failures.size(), 1u);
   EXPECT_EQ(counts.failures[0].member, 2);
@@ -198,7 +192,7 @@ TEST_P(RunMembers, leaves_out_a_member_whose_domain_could_not_be_made) {
   table.failures = {{4, "the source is empty"}};
   const SmallEnsemble ensemble(table);
   EnsembleCounts counts = ensemble.counts();
-  run_members(ensemble.members(), counts, {.devices = devices(GetParam(), 2)});
+  run_members(ensemble.members(), counts, {.devices = devices_for(2, GetParam())});
   EXPECT_EQ(counts.count(MemberState::counted), 5);
   EXPECT_EQ(counts.failures, (std::vector<MemberWords>{{4, "the source is empty"}}));
 }
