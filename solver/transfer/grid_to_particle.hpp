@@ -66,6 +66,11 @@ struct GridToParticle {
   }
 
  private:
+  /// What a node with slopes nx, ny adds to Sums::bend, by the gradient of its weight.
+  TALUS_HD static Vec3<Real> bend_of(Real nx, Real ny, Real across, Real along) {
+    return {nx * across, ny * along, ny * across + nx * along};
+  }
+
   TALUS_HD Sums gather(const Stencil<Real, Shape>& s) const {
     Sums sums;
     const bool follows = grid.mapping == Mapping::terrain_following;
@@ -99,10 +104,7 @@ struct GridToParticle {
         sums.velocity += mean * w;
         sums.change += change * w;
         sums.climb += (mean.z - nx * mean.x - ny * mean.y) * w;
-        if (follows) {
-          const Real across = s.gx[a] * s.wy[b], along = s.wx[a] * s.gy[b];
-          sums.bend += Vec3<Real>{nx * across, ny * along, ny * across + nx * along};
-        }
+        if (follows) sums.bend += bend_of(nx, ny, s.gx[a] * s.wy[b], s.wx[a] * s.gy[b]);
         sums.gradient.a += mean * (s.gx[a] * s.wy[b]);
         sums.gradient.b += mean * (s.wx[a] * s.gy[b]);
         sums.gradient.c += rise * w;

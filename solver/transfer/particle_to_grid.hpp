@@ -75,13 +75,13 @@ struct ParticleToGrid {
         gy[a] = s.gy[a];
         gz[a] = s.gz[a];
       }
-      const ParticleView<Real>& points = kernel.points;
-      const Real volume = points.volume[p];
-      mass = volume * kernel.materials.density(points.material, p);
+      const ParticleView<Real>& all = kernel.points;
+      const Real volume = all.volume[p];
+      mass = volume * kernel.materials.density(all.material, p);
       if constexpr (what != Scatter::momentum) {
-        const MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
-                                        kernel.dilatant ? points.plastic_log_volume[p] : Real(0)};
-        const Sym3<Real> tau = kirchhoff_stress(kernel.materials.of(points.material, points.plastic_shear, p), state);
+        const MaterialState<Real> state{all.elastic_of(p), all.log_volume[p],
+                                        kernel.dilatant ? all.plastic_log_volume[p] : Real(0)};
+        const Sym3<Real> tau = kirchhoff_stress(kernel.materials.of(all.material, all.plastic_shear, p), state);
         const Real dt = what == Scatter::impulse ? Real(kernel.clock->step_size) : Real(1);
         const Real across = -volume * dt / kernel.grid.spacing, up = -volume * dt / kernel.grid.layer_height;
         if constexpr (what == Scatter::springs) stiffness = stiffness_of(kernel, p, s, state);
@@ -90,14 +90,14 @@ struct ParticleToGrid {
         pull.c = (Vec3<Real>{tau.xz, tau.yz, tau.zz} - Vec3<Real>{tau.xx, tau.xy, tau.xz} * s.slope_x -
                   Vec3<Real>{tau.xy, tau.yy, tau.yz} * s.slope_y) *
                  up;
-        if (kernel.loads && points.load[p] >= 0) {
-          const Vec3<double> f = kernel.loads[points.load[p]];
+        if (kernel.loads && all.load[p] >= 0) {
+          const Vec3<double> f = kernel.loads[all.load[p]];
           pulled = Vec3<Real>{Real(f.x), Real(f.y), Real(f.z)} * (volume * dt);
         }
       }
-      corner = points.velocity_of(p);
+      corner = all.velocity_of(p);
       if (kernel.affine) {
-        turn = points.affine_of(p);
+        turn = all.affine_of(p);
         corner += turn * Vec3<Real>{s.near_x, s.near_y, s.near_z};
       }
     }
