@@ -26,20 +26,19 @@ double bottom_of(const Raster& terrain) {
 }
 
 /// Where the points stand in space, for those who look at the file; the solver takes x, y and the height attribute.
-std::vector<openvdb::Vec3d> positions_of(const Domain& domain) {
+std::vector<openvdb::Vec3d> positions_of(const Domain& domain, double bottom) {
   const SeedPoints& points = domain.points;
   std::vector<openvdb::Vec3d> positions(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     const double ground = bilinear(domain.terrain, points.x[p], points.y[p]);
-    positions[p] = {points.x[p], points.y[p],
-                    (std::isnan(ground) ? bottom_of(domain.terrain) : ground) + points.height[p]};
+    positions[p] = {points.x[p], points.y[p], (std::isnan(ground) ? bottom : ground) + points.height[p]};
   }
   return positions;
 }
 
-openvdb::GridBase::Ptr point_grid(const Domain& domain) {
+openvdb::GridBase::Ptr point_grid(const Domain& domain, double bottom) {
   const SeedPoints& points = domain.points;
-  PointGrid grid(positions_of(domain), *layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain)));
+  PointGrid grid(positions_of(domain, bottom), *layout::transform(domain.grid, domain.layer_height, bottom));
   std::vector<std::int64_t> ids(points.size());
   std::iota(ids.begin(), ids.end(), 0);
   grid.attach(layout::volume, points.volume);
@@ -54,27 +53,36 @@ openvdb::GridBase::Ptr point_grid(const Domain& domain) {
   return grid.grid();
 }
 
+/// The cells of a raster that hold a number, leaf by leaf.
 template <class Grid, class Value>
-openvdb::GridBase::Ptr sheet(const Domain& domain, const Raster& raster, const char* name, Value&& value) {
+openvdb::GridBase::Ptr sheet(const Domain& domain, double bottom, const Raster& raster, const char* name,
+                             Value&& value) {
+  constexpr int side = Grid::TreeType::LeafNodeType::DIM;
   auto grid = Grid::create();
-  auto accessor = grid->getAccessor();
-  for (int row = 0; row < raster.grid.rows; ++row)
-    for (int column = 0; column < raster.grid.columns; ++column)
-      if (const double cell = raster.at(column, row); !std::isnan(cell))
-        accessor.setValueOn(openvdb::Coord(column, row, 0), value(cell));
+  for (int south = 0; south < raster.grid.rows; south += side)
+    for (int west = 0; west < raster.grid.columns; west += side) {
+      typename Grid::TreeType::LeafNodeType* leaf = nullptr;
+      for (int row = south; row < std::min(south + side, raster.grid.rows); ++row)
+        for (int column = west; column < std::min(west + side, raster.grid.columns); ++column) {
+          const double cell = raster.at(column, row);
+          if (std::isnan(cell)) continue;
+          if (leaf == nullptr) leaf = grid->tree().touchLeaf(openvdb::Coord(west, south, 0));
+          leaf->setValueOn(openvdb::Coord(column, row, 0), value(cell));
+        }
+    }
   grid->setName(name);
-  grid->setTransform(layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain)));
+  grid->setTransform(layout::transform(domain.grid, domain.layer_height, bottom));
   return grid;
 }
 
-openvdb::GridBase::Ptr value_sheet(const Domain& domain, const Raster& raster, const char* name) {
-  auto grid = sheet<openvdb::DoubleGrid>(domain, raster, name, [](double cell) { return cell; });
+openvdb::GridBase::Ptr value_sheet(const Domain& domain, double bottom, const Raster& raster, const char* name) {
+  auto grid = sheet<openvdb::DoubleGrid>(domain, bottom, raster, name, [](double cell) { return cell; });
   grid->insertMeta("units", openvdb::StringMetadata("m"));
   return grid;
 }
 
 /// The cells of the background grid around the points; voxel (column, row, layer).
-openvdb::GridBase::Ptr active_mask(const Domain& domain, const ActiveCells& cells) {
+openvdb::GridBase::Ptr active_mask(const Domain& domain, double bottom, const ActiveCells& cells) {
   auto grid = openvdb::MaskGrid::create();
   constexpr int side = ActiveCells::side;
   for (int row = 0; row < cells.rows; row += side) {
@@ -87,7 +95,7 @@ openvdb::GridBase::Ptr active_mask(const Domain& domain, const ActiveCells& cell
     }
   }
   grid->setName(layout::active);
-  grid->setTransform(layout::transform(domain.grid, domain.layer_height, bottom_of(domain.terrain)));
+  grid->setTransform(layout::transform(domain.grid, domain.layer_height, bottom));
   grid->insertMeta(layout::mask_h, openvdb::DoubleMetadata(domain.grid.cell));
   grid->insertMeta(layout::mask_h_z, openvdb::DoubleMetadata(domain.layer_height));
   grid->insertMeta("units", openvdb::StringMetadata("voxel (column, row, layer above the bed); h and h_z in m"));
@@ -154,16 +162,17 @@ void write_domain(const fs::path& file, const Domain& domain) {
   openvdb::initialize();
   PendingFile pending(file);
   const ActiveCells active = active_cells(domain.grid, domain.layer_height, domain.points);
+  const double bottom = bottom_of(domain.terrain);
   try {
     openvdb::GridPtrVec grids{
-        point_grid(domain),
-        value_sheet(domain, domain.terrain, layout::terrain),
-        value_sheet(domain, domain.before, layout::before),
-        value_sheet(domain, domain.release_thickness, layout::release_thickness),
-        sheet<openvdb::MaskGrid>(domain, domain.terrain, layout::inside, [](double) { return true; }),
-        active_mask(domain, active)};
+        point_grid(domain, bottom),
+        value_sheet(domain, bottom, domain.terrain, layout::terrain),
+        value_sheet(domain, bottom, domain.before, layout::before),
+        value_sheet(domain, bottom, domain.release_thickness, layout::release_thickness),
+        sheet<openvdb::MaskGrid>(domain, bottom, domain.terrain, layout::inside, [](double) { return true; }),
+        active_mask(domain, bottom, active)};
     for (const auto& [name, raster] : domain.bed) {
-      grids.push_back(sheet<openvdb::DoubleGrid>(domain, raster, (layout::bed_prefix + name).c_str(),
+      grids.push_back(sheet<openvdb::DoubleGrid>(domain, bottom, raster, (layout::bed_prefix + name).c_str(),
                                                  [](double cell) { return cell; }));
     }
     write_grids(pending.path(), file, grids, metadata_of(domain));
