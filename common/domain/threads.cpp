@@ -28,4 +28,14 @@ void limit_threads_of_libraries(int threads) {
   call_if_loaded("openblas_set_num_threads", threads);
 }
 
+struct ThreadsOfLibraries::Limit {
+  tbb::global_control control;
+};
+
+ThreadsOfLibraries::ThreadsOfLibraries(int threads)
+    : limit_(
+          new Limit{{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(1, threads))}}) {}
+
+ThreadsOfLibraries::~ThreadsOfLibraries() = default;
+
 }  // namespace talus

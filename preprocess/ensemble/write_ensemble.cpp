@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "common/domain/domain_facts.hpp"
+#include "common/domain/threads.hpp"
 #include "common/error.hpp"
 #include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
@@ -296,9 +297,10 @@ void MemberDomains::make_all() {
   make_folder(paths_.folder());
   const auto began = std::chrono::steady_clock::now();
   {
+    const int limit = std::max(thread_limit(), 1);
+    const auto count = std::min(todo_.size(), static_cast<std::size_t>(std::min(limit, most_threads)));
+    const ThreadsOfLibraries who_is_left(limit - static_cast<int>(count) + 1);
     std::vector<std::jthread> threads;
-    const auto count =
-        std::min<std::size_t>(todo_.size(), static_cast<std::size_t>(std::clamp(thread_limit(), 1, most_threads)));
     for (std::size_t t = 0; t < count; ++t) threads.emplace_back([this] { work(); });
   }
   if (fault_) std::rethrow_exception(fault_);
