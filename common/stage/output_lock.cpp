@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::atomic<bool> lock_held{false};
+std::atomic<unsigned> locks_taken{0};
 
 std::string words_of(int code) { return std::generic_category().message(code); }
 
@@ -92,6 +93,7 @@ int lock(const fs::path& file) {
     struct stat mine {
     }, there{};
     if (::fstat(descriptor, &mine) == 0 && ::stat(file.c_str(), &there) == 0 && mine.st_ino == there.st_ino) {
+      ++locks_taken;
       lock_held = true;
       return descriptor;
     }
@@ -129,6 +131,8 @@ OutputLock::~OutputLock() {
 }
 
 bool holds_output_lock() { return lock_held; }
+
+unsigned output_locks_taken() { return locks_taken; }
 
 const std::string& process_word() {
   static const std::string word = fmt::format("{}-{:08x}", ::getpid(), std::random_device{}());

@@ -31,6 +31,9 @@ class OutputLock {
 /// left.
 bool holds_output_lock();
 
+/// How many such locks this process has taken: what it knows of a folder from an earlier one may be old.
+unsigned output_locks_taken();
+
 /// A word for this process that no other has, for names of partial files: "1234-9f3c21ab".
 const std::string& process_word();
 

@@ -6,7 +6,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -46,18 +49,49 @@ void sync_folder(const fs::path& folder) {
 /// ".NAME."
 std::string stem_of_partials(const fs::path& file) { return "." + file.filename().string() + "."; }
 
-/// Removes the partial files of this name that killed processes left, and what GDAL left beside those.
-void sweep(const fs::path& file) {
-  const std::string stem = stem_of_partials(file);
-  std::vector<fs::path> left;
-  std::error_code ignored;
-  for (fs::directory_iterator entry(file.has_parent_path() ? file.parent_path() : fs::path("."), ignored), end;
-       entry != end && !ignored; entry.increment(ignored)) {
-    const std::string name = entry->path().filename().string();
-    const bool own = name.find(process_word()) != std::string::npos;
-    if (name.starts_with(stem) && name.find(".partial") != std::string::npos && !own) left.push_back(entry->path());
+/// Partial files of other processes in folders that are this one's own. A folder is listed once under a lock: who wrote
+/// a file of these names has ended before, and to list it again for every file would take longer than to write them
+/// where there are thousands.
+class Leftovers {
+ public:
+  /// The partial files of this name that killed processes left, and what GDAL left beside those.
+  std::vector<fs::path> of(const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    const std::string stem = stem_of_partials(file);
+    const std::lock_guard lock(mutex_);
+    if (const unsigned now = output_locks_taken(); of_lock_ != now) {
+      names_.clear();
+      of_lock_ = now;
+    }
+    const auto [found, is_new] = names_.try_emplace(folder);
+    if (is_new) found->second = listed(folder);
+    std::vector<fs::path> left;
+    for (const std::string& name : found->second)
+      if (name.starts_with(stem)) left.push_back(folder / name);
+    return left;
   }
-  for (const fs::path& path : left) fs::remove(path, ignored);
+
+ private:
+  static std::vector<std::string> listed(const fs::path& folder) {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder, ignored), end; entry != end && !ignored; entry.increment(ignored)) {
+      std::string name = entry->path().filename().string();
+      const bool own = name.find(process_word()) != std::string::npos;
+      if (name.starts_with('.') && name.find(".partial") != std::string::npos && !own) names.push_back(std::move(name));
+    }
+    return names;
+  }
+
+  std::mutex mutex_;
+  std::map<fs::path, std::vector<std::string>> names_;
+  unsigned of_lock_ = 0;
+};
+
+void sweep(const fs::path& file) {
+  static Leftovers leftovers;
+  std::error_code ignored;
+  for (const fs::path& path : leftovers.of(file)) fs::remove(path, ignored);
 }
 
 }  // namespace

@@ -96,5 +96,17 @@ TEST(PendingFile, sweeps_what_a_killed_process_left_where_the_folder_is_its_own)
   EXPECT_EQ(names_in(scratch.folder()), (std::vector<std::string>{".map.tifs.77-0badcafe.partial", ".talus.lock"}));
 }
 
+TEST(PendingFile, sweeps_under_each_lock_what_was_left_before_it) {
+  const Scratch scratch;
+  for (const char* left : {".map.tif.77-0badcafe.partial", ".map.tif.78-0badcafe.partial"}) {
+    scratch.write(left, "half");
+    const OutputLock lock(scratch.folder(), "talus-first");
+    { const PendingFile pending(scratch / "other.tif"); }
+    EXPECT_EQ(names_in(scratch.folder()), (std::vector<std::string>{left, ".talus.lock"}));
+    { const PendingFile pending(scratch / "map.tif"); }
+    EXPECT_EQ(names_in(scratch.folder()), std::vector<std::string>{".talus.lock"});
+  }
+}
+
 }  // namespace
 }  // namespace talus
