@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "common/stage/stage.hpp"
+#include "common/stage/in_threads.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -16,12 +16,11 @@ class Distances {
  public:
   Distances(const EnsembleCounts& counts, const std::vector<std::int64_t>& members) : count_(members.size()) {
     values_.assign(count_ * count_, 0.0);
-    for (std::size_t a = 0; a < count_; ++a) {
-      stop_if_interrupted("comparing the footprints");
+    in_threads(count_, "comparing the footprints", [&](std::size_t a) {
       for (std::size_t b = a + 1; b < count_; ++b)
         values_[a * count_ + b] = values_[b * count_ + a] = jaccard_distance(
             counts.flow[static_cast<std::size_t>(members[a])], counts.flow[static_cast<std::size_t>(members[b])]);
-    }
+    });
   }
   std::size_t count() const { return count_; }
   double operator()(std::size_t a, std::size_t b) const { return values_[a * count_ + b]; }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/resampling.hpp"
+#include "common/stage/in_threads.hpp"
 #include "postprocess/ensemble/member_rows.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/survey/survey_grid.hpp"
@@ -38,32 +39,30 @@ std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& sur
   const std::string words =
       fmt::format("footprint (thicker than {:g} m) against {}", counts.scene.threshold, survey.name);
   const double area = survey.grid.cell * survey.grid.cell;
+  const std::vector<double> none(counts.states.size(), nan);
   std::vector<RowColumn> flow{
-      {ColumnKind::score, "footprint_csi", "1", "critical success index of the " + words, {}, {}},
-      {ColumnKind::score, "footprint_hit_rate", "1", "hit rate of the " + words, {}, {}},
-      {ColumnKind::score, "footprint_false_alarm_ratio", "1", "false alarms of the " + words, {}, {}}};
-  std::vector<RowColumn> of_deposit{
-      {ColumnKind::score, "deposit_csi", "1", "critical success index of the deposit's " + words, {}, {}}};
-  for (std::size_t k = 0; k < counts.states.size(); ++k) {
-    stop_if_interrupted("scoring the members");
-    const bool counted = counts.states[k] == MemberState::counted;
-    Contingency here;
-    if (counted && !survey.footprint.empty())
-      here = compare(on_survey(counts.flow[k], counts.scene.grid, survey.grid), 0.5, survey.footprint,
-                     survey.footprint_threshold, area);
-    const bool scored = counted && !survey.footprint.empty();
-    flow[0].values.push_back(scored ? here.csi() : nan);
-    flow[1].values.push_back(scored ? here.hit_rate() : nan);
-    flow[2].values.push_back(scored ? here.false_alarm_ratio() : nan);
-    const bool lies = counted && !deposit.empty();
-    of_deposit[0].values.push_back(lies ? compare(on_survey(counts.deposit[k], counts.scene.grid, survey.grid), 0.5,
-                                                  deposit, deposit_threshold, area)
-                                              .csi()
-                                        : nan);
-  }
+      {ColumnKind::score, "footprint_csi", "1", "critical success index of the " + words, none, {}},
+      {ColumnKind::score, "footprint_hit_rate", "1", "hit rate of the " + words, none, {}},
+      {ColumnKind::score, "footprint_false_alarm_ratio", "1", "false alarms of the " + words, none, {}}};
+  RowColumn of_deposit{
+      ColumnKind::score, "deposit_csi", "1", "critical success index of the deposit's " + words, none, {}};
+  in_threads(counts.states.size(), "scoring the members", [&](std::size_t k) {
+    if (counts.states[k] != MemberState::counted) return;
+    if (!survey.footprint.empty()) {
+      const Contingency here = compare(on_survey(counts.flow[k], counts.scene.grid, survey.grid), 0.5, survey.footprint,
+                                       survey.footprint_threshold, area);
+      flow[0].values[k] = here.csi();
+      flow[1].values[k] = here.hit_rate();
+      flow[2].values[k] = here.false_alarm_ratio();
+    }
+    if (!deposit.empty())
+      of_deposit.values[k] =
+          compare(on_survey(counts.deposit[k], counts.scene.grid, survey.grid), 0.5, deposit, deposit_threshold, area)
+              .csi();
+  });
   std::vector<RowColumn> columns;
   if (!survey.footprint.empty()) columns = std::move(flow);
-  if (!deposit.empty()) columns.push_back(std::move(of_deposit[0]));
+  if (!deposit.empty()) columns.push_back(std::move(of_deposit));
   return columns;
 }
 

@@ -4,12 +4,16 @@
 #include <cmath>
 
 #include "common/map/isolines.hpp"
+#include "common/stage/in_threads.hpp"
 #include "postprocess/ensemble/page.hpp"
 #include "postprocess/picture/layers.hpp"
 #include "postprocess/report/pack.hpp"
 
 namespace talus::postprocess {
 namespace {
+
+/// Outlines are made of so many members before it is asked whether they are enough for the page.
+constexpr std::size_t members_at_a_time = 256;
 
 /// The corners of a line on the raster of half cells: points on straight stretches are left out.
 std::vector<int> corners(const Polyline& line, const MapGrid& grid) {
@@ -50,6 +54,23 @@ std::vector<std::vector<int>> outlines_of(const Footprint& footprint, const MapG
   return footprint_outlines({part.values.begin(), part.values.end()}, part.grid);
 }
 
+/// Both outlines of a member; none of one that is not counted.
+struct MemberOutlines {
+  std::vector<std::vector<int>> flow, deposit;
+};
+
+/// Of the members from `first` on, before `end`.
+std::vector<MemberOutlines> outlines_of_members(const EnsembleCounts& counts, std::size_t first, std::size_t end,
+                                                const Window& window) {
+  std::vector<MemberOutlines> outlines(end - first);
+  in_threads(outlines.size(), "making ensemble.html", [&](std::size_t n) {
+    if (counts.states[first + n] != MemberState::counted) return;
+    outlines[n] = {outlines_of(counts.flow[first + n], counts.scene.grid, window),
+                   outlines_of(counts.deposit[first + n], counts.scene.grid, window)};
+  });
+  return outlines;
+}
+
 std::size_t count_of(const std::vector<std::vector<int>>& lines) {
   std::size_t count = 0;
   for (const auto& line : lines) count += line.size();
@@ -73,14 +94,17 @@ Json ensemble_outlines_json(const EnsemblePageInput& input, const Window& window
             {"members", Json::array()}, {"flow", Json::array()}, {"deposit", Json::array()}};
   std::size_t numbers = 0;
   const std::size_t most = std::min(counts.states.size(), members_on_page);
-  for (std::size_t k = 0; k < most && numbers < outline_numbers; ++k) {
-    if (counts.states[k] != MemberState::counted) continue;
-    stop_if_interrupted("making ensemble.html");
-    const auto flow = outlines_of(counts.flow[k], grid, window), deposit = outlines_of(counts.deposit[k], grid, window);
-    numbers += count_of(flow) + count_of(deposit);
-    json["members"].push_back(k);
-    json["flow"].push_back(flow);
-    json["deposit"].push_back(deposit);
+  for (std::size_t first = 0; first < most && numbers < outline_numbers; first += members_at_a_time) {
+    const std::size_t end = std::min(most, first + members_at_a_time);
+    const std::vector<MemberOutlines> outlines = outlines_of_members(counts, first, end, window);
+    for (std::size_t k = first; k < end && numbers < outline_numbers; ++k) {
+      if (counts.states[k] != MemberState::counted) continue;
+      const auto& [flow, deposit] = outlines[k - first];
+      numbers += count_of(flow) + count_of(deposit);
+      json["members"].push_back(k);
+      json["flow"].push_back(flow);
+      json["deposit"].push_back(deposit);
+    }
   }
   json["release"] =
       lines_of(isolines(grid, counts.scene.release_thickness, counts.scene.threshold, AtEdge::close), window);

@@ -3,11 +3,15 @@
 // GeoTIFFs, styles, outlines and the project of QGIS.
 #include "postprocess/ensemble/write_maps.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
 #include "common/qgis/project.hpp"
+#include "common/stage/in_threads.hpp"
 #include "postprocess/ensemble/facts.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/window.hpp"
@@ -23,7 +27,7 @@ const OutlineStyle release_line{{0.0, 0.45, 0.36}, 0.7, false};
 const OutlineStyle share_line{{0.12, 0.12, 0.14}, 0.4, false};
 constexpr double outlined_shares[] = {0.05, 0.5, 0.95};
 
-/// What is written, collected while it is.
+/// What is written, collected in the order of the maps.
 struct Writing {
   const fs::path& folder;
   const Ensemble& ensemble;
@@ -34,6 +38,13 @@ struct Writing {
   OutlineLayer outlines{"probability", {}};
 };
 
+/// What came of one map.
+struct Written {
+  fs::path raster, style_file;
+  RasterStyle style;
+  std::vector<OutlineFeature> outlines{};
+};
+
 void write_raster(const fs::path& file, const MapGrid& grid, std::vector<double> values, const std::string& title,
                   const std::string& unit, Facts facts) {
   const std::string shown = unit_words(unit);
@@ -41,34 +52,58 @@ void write_raster(const fs::path& file, const MapGrid& grid, std::vector<double>
             {fmt::format("{} [{}]", title, shown.empty() ? "-" : shown), shown, std::move(facts)});
 }
 
-void add_outlines(Writing& writing, const EnsembleMap& map, const Raster& raster) {
+std::vector<OutlineFeature> outlines_of_shares(const EnsembleMap& map, const Raster& raster) {
+  std::vector<OutlineFeature> outlines;
   for (const double share : outlined_shares)
-    writing.outlines.features.push_back({fmt::format("{}: {:g} % of members", map.name, 100 * share),
-                                         outline_above(raster, share),
-                                         {{"probability", share}, {"threshold", map.level}}});
+    outlines.push_back({fmt::format("{}: {:g} % of members", map.name, 100 * share),
+                        outline_above(raster, share),
+                        {{"probability", share}, {"threshold", map.level}}});
+  return outlines;
 }
 
-void write_map(Writing& writing, const EnsembleMap& map) {
+Written written_map(const Writing& writing, const EnsembleMap& map) {
   stop_if_interrupted("writing " + map.name);
   const EnsembleScene& scene = writing.ensemble.counts.scene;
   const HazardOptions& hazard = writing.options.hazard;
   std::vector<double> values = values_of(writing.ensemble, map, hazard);
-  const RasterStyle style = style_of(map, values, hazard);
-  if (map.kind == Kind::share && !counted_maps[map.tally].early) add_outlines(writing, map, {scene.grid, values});
+  Written written{writing.folder / (map.name + ".tif"), {}, style_of(map, values, hazard)};
+  if (map.kind == Kind::share && !counted_maps[map.tally].early)
+    written.outlines = outlines_of_shares(map, {scene.grid, values});
   Facts facts = ensemble_facts(writing.ensemble);
   for (auto& fact : map_facts(writing.ensemble, map, hazard)) facts.push_back(std::move(fact));
   facts.emplace_back("NODATA_MEANING", counted_maps[map.tally].early && map.unit == "s"
                                            ? "outside the computed domain, or too few members arrive"
                                            : "outside the computed domain");
-  const fs::path file = writing.folder / (map.name + ".tif");
-  write_raster(file, scene.grid, std::move(values), map.title, map.unit, std::move(facts));
-  writing.files.push_back(file);
-  writing.files.push_back(write_qgis_style(file, style));
+  write_raster(written.raster, scene.grid, std::move(values), map.title, map.unit, std::move(facts));
+  written.style_file = write_qgis_style(written.raster, written.style);
+  return written;
+}
+
+void take(Writing& writing, const EnsembleMap& map, Written&& written) {
+  writing.files.insert(writing.files.end(), {written.raster, written.style_file});
+  std::move(written.outlines.begin(), written.outlines.end(), std::back_inserter(writing.outlines.features));
   const bool first = writing.shares.layers.empty() && map.kind == Kind::share;
   ProjectGroup& group = map.kind == Kind::share || map.kind == Kind::hazard     ? writing.shares
                         : map.kind == Kind::error || map.kind == Kind::to_halve ? writing.errors
                                                                                 : writing.statistics;
-  group.layers.push_back({map.title, file.filename().string(), first, style});
+  group.layers.push_back({map.title, written.raster.filename().string(), first, written.style});
+}
+
+/// How many maps are made at a time: each needs its values several times over, and GDAL's tiles.
+std::size_t maps_at_a_time(const MapGrid& grid) {
+  constexpr double bytes = 4e9, bytes_of_a_cell = 64;
+  return std::min(most_threads_that_write,
+                  static_cast<std::size_t>(1 + bytes / (bytes_of_a_cell * static_cast<double>(grid.count()))));
+}
+
+/// The maps wait for the disk and need one processor each, so some are made at a time.
+void write_maps(Writing& writing) {
+  const std::vector<EnsembleMap> maps = ensemble_maps(writing.ensemble, writing.options.hazard);
+  std::vector<Written> written(maps.size());
+  in_threads(
+      maps.size(), "writing the maps", [&](std::size_t n) { written[n] = written_map(writing, maps[n]); },
+      maps_at_a_time(writing.ensemble.counts.scene.grid));
+  for (std::size_t n = 0; n < maps.size(); ++n) take(writing, maps[n], std::move(written[n]));
 }
 
 /// The window of all that any member reached, with a margin.
@@ -116,7 +151,7 @@ void write_project(Writing& writing) {
 
 std::vector<fs::path> write_probability_maps(const fs::path& folder, const Ensemble& ensemble, const Options& options) {
   Writing writing{folder, ensemble, options};
-  for (const EnsembleMap& map : ensemble_maps(ensemble, options.hazard)) write_map(writing, map);
+  write_maps(writing);
   write_ground(writing);
   write_project(writing);
   return writing.files;

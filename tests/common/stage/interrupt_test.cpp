@@ -7,9 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <functional>
 
+#include "common/stage/in_threads.hpp"
 #include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
 #include "tests/common/scratch.hpp"
@@ -136,6 +139,22 @@ TEST(Interrupt, loops_stop_at_their_next_look) {
                            }
                          }),
             14);
+}
+
+TEST(Interrupt, work_that_threads_share_ends_with_what_is_begun) {
+  const Scratch scratch;
+  const int code = exit_code_of(scratch, [] {
+    std::atomic<int> done{0};
+    try {
+      in_threads(1'000'000, "counting", [&](std::size_t place) {
+        if (place == 3) std::raise(SIGTERM);
+        ++done;
+      });
+    } catch (const Interrupted& error) {
+      ::_exit(error.faults().front().what == "stopped while counting" && done < 1'000'000 ? 0 : 1);
+    }
+  });
+  EXPECT_EQ(code, 0) << text_of(scratch / "log");
 }
 
 }  // namespace
