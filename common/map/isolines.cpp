@@ -20,7 +20,13 @@ class Marching {
   std::vector<Polyline> run() {
     const int first = close_ ? -1 : 0, ring = close_ ? 0 : 1;
     for (int row = first; row < grid_.rows - ring; ++row) {
-      for (int column = first; column < grid_.columns - ring; ++column) square(column, row);
+      double south = value(first, row), north = value(first, row + 1);
+      for (int column = first; column < grid_.columns - ring; ++column) {
+        const double south_east = value(column + 1, row), north_east = value(column + 1, row + 1);
+        square(column, row, {south, south_east, north_east, north});
+        south = south_east;
+        north = north_east;
+      }
     }
     return chains();
   }
@@ -54,9 +60,10 @@ class Marching {
     links_[b].push_back(a);
   }
 
-  void square(int column, int row) {
-    const std::array<double, 4> corner = {value(column, row), value(column + 1, row), value(column + 1, row + 1),
-                                          value(column, row + 1)};
+  /// The values at the corners: south-west, south-east, north-east, north-west.
+  void square(int column, int row, const std::array<double, 4>& corner) {
+    const bool above = corner[0] > level_;
+    if ((corner[1] > level_) == above && (corner[2] > level_) == above && (corner[3] > level_) == above) return;
     if (std::any_of(corner.begin(), corner.end(), [](double v) { return std::isnan(v); })) return;
     const std::array<Edge, 4> edges = {edge(column, row, 0), edge(column + 1, row, 1), edge(column, row + 1, 0),
                                        edge(column, row, 1)};
