@@ -79,6 +79,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     clock = clock_.read();
     const int halt = clock.halt;
     this->measured_ = halt == at_event && recording_.has_company();
+    if (halt == at_event && !recording_.has_company()) look_back();
     if (halt == wants_sort) expected_ = clock.steps_since_sort;
     // A sort comes before an event of the same time (Clock::begin_step), and the event's records see who has left.
     if (halt == wants_sort || (halt == at_event && clock.outflow_count > 0)) {
@@ -153,17 +154,21 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     return cpu_steps_between_sorts;
   }
 
-  /// The method ends a batch: it halts where something is due, and records the maps of speed and pressure at an event.
+  /// The method ends a batch: it halts where something is due. With other runs it starts what an event asks for at
+  /// once, whether or not this is one: that saves a start of its own.
   void close() {
     for_each(device_, 1, CloseBatch{clock_.data()});
     clock_.pass_out();
-    if constexpr (!Device::is_gpu) {
-      if (clock_.data()->halt != at_event) return;
-    }
+    if (!recording_.has_company()) return;
+    look_back();
+    this->start_measures();
+  }
+
+  /// The method records the maps of speed and pressure where the batch has halted at an event.
+  void look_back() {
     this->measure_columns();
     this->sum_motion(clock_.data());
     this->record_motion();
-    if (recording_.has_company()) this->start_measures();  // so that a record needs no start of its own
   }
 
   /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
