@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 #include <exception>
+#include <mutex>
 
 #include "common/stage/stage.hpp"
 
@@ -29,6 +30,7 @@ struct Slot {
   std::array<char, 4096> path{};
 };
 std::array<Slot, 32> doomed;
+std::mutex naming;  // who compares names must not meet one that another thread writes; handlers do not wait for it
 
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free);
 
@@ -119,6 +121,7 @@ OwnEnd::~OwnEnd() {
 void doom(const std::filesystem::path& path) {
   const std::string name = whole_name(path);
   if (name.size() >= Slot{}.path.size()) return;
+  const std::lock_guard lock(naming);
   for (Slot& slot : doomed) {
     int expected = Slot::unused;
     if (!slot.state.compare_exchange_strong(expected, Slot::being_filled)) continue;
@@ -130,6 +133,7 @@ void doom(const std::filesystem::path& path) {
 
 void spare(const std::filesystem::path& path) {
   const std::string name = whole_name(path);
+  const std::lock_guard lock(naming);
   for (Slot& slot : doomed)
     if (slot.state.load() == Slot::filled && name == slot.path.data()) slot.state.store(Slot::unused);
 }

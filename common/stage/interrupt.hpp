@@ -26,7 +26,7 @@ class OwnEnd {
 };
 
 /// A file that goes when the process is ended by a signal: a partial one. Beyond 32 at once, or 4 kB of name, it stays
-/// and the next run sweeps it.
+/// and the next run sweeps it. Threads may call both functions at the same time.
 void doom(const std::filesystem::path& path);
 /// From now on the file stays.
 void spare(const std::filesystem::path& path);

@@ -13,6 +13,7 @@
 #include "common/ensemble/names.hpp"
 #include "common/gis/geotiff.hpp"
 #include "common/gis/read_raster.hpp"
+#include "common/stage/machine.hpp"
 #include "postprocess/ensemble/hazard.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
 #include "postprocess/postprocess.hpp"
@@ -134,6 +135,28 @@ TEST_F(EnsembleProducts, of_parts_are_those_of_the_whole) {
   const Raster again = read_raster(out_ / "probability/peak_thickness_mean.tif");
   for (std::size_t n = 0; n < mean.values.size(); ++n)
     EXPECT_TRUE(mean.values[n] == again.values[n] || std::isnan(mean.values[n])) << n;
+}
+
+TEST_F(EnsembleProducts, do_not_depend_on_how_many_threads_make_them) {
+  write_members();
+  write_part({0, 40}, "counts.h5", 3);
+  const auto written = [&](int threads) {
+    set_thread_limit(threads);
+    run_it();
+    set_thread_limit(0);
+    std::vector<std::pair<fs::path, std::string>> files;  // those that do not say when they were made
+    for (const fs::path& file : results_)
+      if (const fs::path kind = file.extension(); kind == ".tif" || kind == ".qml" || kind == ".qgs" || kind == ".csv")
+        files.emplace_back(file, test::text_of(file));
+    return files;
+  };
+  const auto by_one = written(1), by_many = written(16);
+  EXPECT_GT(by_one.size(), 50U);
+  ASSERT_EQ(by_one.size(), by_many.size());
+  for (std::size_t n = 0; n < by_one.size(); ++n) {
+    EXPECT_EQ(by_one[n].first, by_many[n].first);
+    EXPECT_TRUE(by_one[n].second == by_many[n].second) << by_one[n].first;
+  }
 }
 
 TEST_F(EnsembleProducts, have_a_row_for_each_member_also_those_that_failed_or_wait) {
