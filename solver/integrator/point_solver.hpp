@@ -145,11 +145,11 @@ class PointSolver : public Solver {
     clock.halt = clock.request = running;
   }
 
-  /// Whether what repeats may be started with that of other runs: it does not change with time, and may do a few steps
-  /// more than it was asked for.
+  /// Whether what repeats may be started with that of other runs: it does not change with time, may do a few steps more
+  /// than it was asked for, and has no kernels (of contact points, of the energy budget) that are started alone.
   bool starts_with_others() const {
     return !settings_.deterministic && settings_.walls.empty() && settings_.loads.empty() &&
-           !settings_.materials.densities_differ;
+           !settings_.materials.densities_differ && !settings_.energy_budget && !surroundings_.contact().on();
   }
 
   /// The clock that a run goes on with from a state.
