@@ -121,7 +121,7 @@ void gpu_launch(const GpuDevice& device, const char* where, int blocks, int thre
     if constexpr (runs_with_others<Kernel>()) {
       list->add(kernel, blocks, threads, start_several<Kernel>);
     } else {
-      list->add_other();
+      list->leave_out(where);
     }
     return;
   }

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -46,7 +48,7 @@ class LaunchList {
   void clear() {
     launches_.clear();
     bytes_.clear();
-    whole_ = true;
+    alone_ = nullptr;
   }
   /// The method adds a kernel; `start` starts those of its type.
   template <class Kernel>
@@ -56,11 +58,11 @@ class LaunchList {
     const auto* const first = reinterpret_cast<const std::byte*>(&kernel);
     bytes_.insert(bytes_.end(), first, first + sizeof kernel);
   }
-  /// The method notes work that cannot be started with that of others.
-  void add_other() { whole_ = false; }
+  /// The method notes a kernel that cannot be started with those of other runs, by `where` it was to be started.
+  void leave_out(const char* where) { alone_ = where; }
 
-  /// Whether the list holds all that was given.
-  bool is_whole() const { return whole_; }
+  /// Where the last kernel that was left out was to be started; null where the list holds all.
+  const char* left_out() const { return alone_; }
   /// The kernels, in their order.
   const std::vector<Launch>& launches() const { return launches_; }
   /// The bytes of kernel number k, launches()[k].bytes of them.
@@ -78,14 +80,18 @@ class LaunchList {
  private:
   std::vector<Launch> launches_;
   std::vector<std::byte> bytes_;
-  bool whole_ = true;
+  const char* alone_ = nullptr;
 };
 
 /// The work of a run that is started with that of others: `step` again and again, between `begin` and `end`.
 struct SharedWork {
   LaunchList begin, step, end;
-  /// Whether all of it is in the lists.
-  bool is_whole() const { return begin.is_whole() && step.is_whole() && end.is_whole(); }
+  /// Throws std::logic_error: a kernel of it cannot be started with those of others.
+  void check() const {
+    for (const LaunchList* list : {&begin, &step, &end})
+      if (const char* const where = list->left_out())
+        throw std::logic_error("started alone, in a run that says that it starts with others: " + std::string(where));
+  }
   /// Whether other work has the same kinds of kernels in the same order.
   bool is_alike(const SharedWork& other) const {
     return begin.is_alike(other.begin) && step.is_alike(other.step) && end.is_alike(other.end);

@@ -61,8 +61,8 @@ class IntoList {
 template <>
 class Recording<GpuDevice> {
  public:
-  /// With `with_others` the work may be started with that of other runs: it does nothing but start kernels and fill
-  /// with zeros.
+  /// With `with_others` the work may be started with that of other runs: it does nothing but start kernels that can be
+  /// (runs_with_others()) and fill with zeros. Otherwise repeat() throws std::logic_error where there are others.
   explicit Recording(GpuDevice device, bool with_others = false)
       : device_(std::move(device)), with_others_(with_others) {}
   Recording(const Recording&) = delete;
@@ -83,13 +83,16 @@ class Recording<GpuDevice> {
   /// The same between begin() and end(), each done once. With others, body() may be done more often than `times`.
   template <class Body, class Begin, class End>
   void repeat(int times, const Body& body, const Begin& begin, const End& end) {
-    if (shares(body, begin, end)) return detail::gpu_together(device_)->run(device_, work_, times);
+    if (begun_ && has_company()) {
+      list_all(body, begin, end);
+      return detail::gpu_together(device_)->run(device_, work_, times);
+    }
     begin();
     repeat_alone(times, body);
     end();
     begun_ = begun_ || times > 0;
   }
-  /// Whether the work is started with that of other runs, where all of it can be.
+  /// Whether the work is started with that of other runs.
   bool has_company() const { return with_others_ && detail::gpu_together(device_) && !device_.profile().on(); }
   /// The method gives up the recording, because arguments have changed.
   void forget() { recorded_ = listed_ = false; }
@@ -107,17 +110,15 @@ class Recording<GpuDevice> {
     if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
   }
-  /// Whether the work is done with that of others; it is listed where it was not since it was forgotten.
+  /// The method lists the work where it was not since it was forgotten. Throws std::logic_error: some of it cannot be.
   template <class Body, class Begin, class End>
-  bool shares(const Body& body, const Begin& begin, const End& end) {
-    if (!begun_ || !has_company()) return false;
-    if (!listed_) {
-      list(work_.begin, begin);
-      list(work_.step, body);
-      list(work_.end, end);
-      listed_ = true;
-    }
-    return work_.is_whole();
+  void list_all(const Body& body, const Begin& begin, const End& end) {
+    if (listed_) return;
+    list(work_.begin, begin);
+    list(work_.step, body);
+    list(work_.end, end);
+    work_.check();
+    listed_ = true;
   }
   template <class Body>
   void list(LaunchList& list, const Body& body) {

@@ -73,7 +73,7 @@ std::vector<int> expected(std::vector<int> numbers, Work work, int amount, int s
 template <class Device>
 class SmallRun {
  public:
-  SmallRun(const Device& device, int number, Work work)
+  SmallRun(const Device& device, int number, Work work, bool with_others)
       : device_(device),
         work_(work),
         numbers_(1 + 700 * static_cast<std::size_t>(number)),
@@ -81,7 +81,7 @@ class SmallRun {
         spare_(device),
         steps_(device, 1),
         room_(device),
-        recording_(device, true) {
+        recording_(device, with_others) {
     std::iota(numbers_.begin(), numbers_.end(), number);
     on_device_.upload(numbers_);
     spare_.upload(numbers_);
@@ -128,7 +128,7 @@ class SmallRun {
 /// Batches of several lengths, with new arguments every few of them.
 template <class Device>
 void run(const Device& device, int number, Work work) {
-  SmallRun<Device> run(device, number, work);
+  SmallRun<Device> run(device, number, work, work != Work::increase);
   for (int batch = 0; batch < 40; ++batch) {
     SCOPED_TRACE(batch);
     if (batch % 5 == 0) run.change(1 + batch / 5);
@@ -174,6 +174,18 @@ TEST_P(RunsTogether, do_not_mind_others_that_do_something_else) {
 }
 
 TEST_P(RunsTogether, may_be_as_few_as_two) { run_all({Work::add, Work::add}); }
+
+TEST_P(RunsTogether, do_not_leave_a_kernel_out) {
+#if TALUS_FOR_GPU
+  if (GetParam() == On::cpu) return;  // does all as it is given
+  const std::vector<AnyDevice> devices{AnyDevice(GpuDevice::make()), AnyDevice(GpuDevice::make())};
+  share_starts(devices);
+  SmallRun<GpuDevice> run(devices[0].gpu(), 1, Work::increase, true);
+  run.batch(1);  // the first is done as it is
+  EXPECT_THROW(run.batch(1), std::logic_error);
+#endif
+}
+
 TALUS_IN_EACH_PLACE(RunsTogether);
 
 void start_nothing(const LaunchShape&, const LaunchTable&) {}
@@ -214,9 +226,11 @@ TEST(LaunchList, keeps_the_bytes_of_every_kernel) {
   EXPECT_EQ(kept.numbers, &here);
   EXPECT_EQ(kept.amount, 5);
   EXPECT_EQ(list.launches()[1].blocks, 9);
-  EXPECT_TRUE(list.is_whole());
-  list.add_other();
-  EXPECT_FALSE(list.is_whole());
+  EXPECT_EQ(list.left_out(), nullptr);
+  list.leave_out("here");
+  EXPECT_STREQ(list.left_out(), "here");
+  list.clear();
+  EXPECT_EQ(list.left_out(), nullptr);
 }
 
 }  // namespace
