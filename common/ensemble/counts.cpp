@@ -46,6 +46,7 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
     all.results[to] = part.results[from];
     all.windows[to] = part.windows[from];
     for (auto footprints : footprints_of_members) (all.*footprints)[to] = std::move((part.*footprints)[from]);
+    all.deposit_thickness[to] = std::move(part.deposit_thickness[from]);
   }
   for (auto list : {&EnsembleCounts::failures, &EnsembleCounts::warnings})
     for (MemberWords& one : part.*list) add_in_order(all.*list, std::move(one));
@@ -136,6 +137,7 @@ void EnsembleCounts::add(std::int64_t member, const RunMaps& run, const MemberRe
   release[place] = footprint_of(run.initial_thickness, 0);
   flow[place] = footprint_of(run.peak_thickness, scene.threshold);
   deposit[place] = footprint_of(run.deposit_thickness, scene.threshold);
+  if (keeps_deposits) deposit_thickness[place] = keep_thickness(run.deposit_thickness);
 }
 
 void EnsembleCounts::fail(std::int64_t member, std::string words) {
@@ -168,6 +170,7 @@ EnsembleCounts empty_counts(EnsembleScene scene, std::int64_t members, const Mem
   counts.results.resize(count);
   counts.windows.resize(count);
   for (auto footprints : footprints_of_members) (counts.*footprints).resize(count);
+  counts.deposit_thickness.resize(count);
   return counts;
 }
 

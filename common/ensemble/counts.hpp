@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/ensemble/kept_cells.hpp"
+#include "common/ensemble/kept_thickness.hpp"
 #include "common/ensemble/member_words.hpp"
 #include "common/ensemble/names.hpp"
 #include "common/ensemble/options.hpp"
@@ -112,6 +113,8 @@ struct EnsembleCounts {
   std::vector<MemberResult> results;             ///< likewise
   std::vector<CellWindow> windows;  ///< likewise: the member's grid among the scene's; empty unless counted
   std::vector<Footprint> release, flow, deposit;  ///< likewise, over the cells of the window; empty unless counted
+  std::vector<KeptThickness> deposit_thickness;   ///< likewise; of members that were added while keeps_deposits
+  bool keeps_deposits = false;                    ///< members that are added leave the map of their deposit
   std::vector<MemberWords> failures;              ///< by member
   std::vector<MemberWords> warnings;              ///< of members that ended, by member
   Facts provenance;

@@ -58,6 +58,47 @@ std::vector<Footprint> read_footprints(const h5::File& file, const std::string& 
   return footprints;
 }
 
+constexpr const char* thickness_group = "/members/deposit_thickness";
+
+/// Those of members that keep none are empty.
+void write_thickness(h5::File& file, const std::vector<KeptThickness>& members) {
+  if (std::ranges::none_of(members, &KeptThickness::kept)) return;
+  std::vector<Footprint> cells;
+  std::vector<std::int32_t> values;
+  for (const KeptThickness& one : members) {
+    cells.push_back(one.cells);
+    values.insert(values.end(), one.values.begin(), one.values.end());
+  }
+  write_footprints(file, thickness_group, cells);
+  file.set_number(thickness_group, "quantum_m", KeptThickness::quantum);
+  file.write<std::int32_t>(std::string(thickness_group) + "/values", length_of(values), values);
+}
+
+std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vector<CellWindow>& windows) {
+  std::vector<KeptThickness> members(windows.size());
+  if (!file.exists(thickness_group)) return members;
+  const double quantum = file.number(thickness_group, "quantum_m");
+  if (quantum != KeptThickness::quantum)
+    file.refuse(fmt::format("the quantum of {} is {} m", thickness_group, quantum),
+                fmt::format("it is {} m", KeptThickness::quantum));
+  const std::vector<Footprint> cells = read_footprints(file, thickness_group, windows);
+  const std::string path = std::string(thickness_group) + "/values";
+  const auto values = file.read_list<std::int32_t>(path);
+  h5::check_values<std::int32_t>(file, path, values, h5::not_negative);
+  std::size_t inside = 0;
+  for (const Footprint& one : cells) inside += cells_inside(one);
+  if (inside != values.size())
+    file.refuse(fmt::format("dataset {} has {} values", path, values.size()),
+                fmt::format("its footprints have {} cells inside", inside));
+  auto next = values.begin();
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto end = next + static_cast<std::ptrdiff_t>(cells_inside(cells[k]));
+    members[k] = {cells[k], {next, end}};
+    next = end;
+  }
+  return members;
+}
+
 void write_windows(h5::File& file, const std::vector<CellWindow>& windows) {
   std::vector<std::int32_t> numbers;
   for (const CellWindow& w : windows) numbers.insert(numbers.end(), {w.column, w.row, w.columns, w.rows});
@@ -99,6 +140,7 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
   write_footprints(file, "/members/release", counts.release);
   write_footprints(file, "/members/flow", counts.flow);
   write_footprints(file, "/members/deposit", counts.deposit);
+  write_thickness(file, counts.deposit_thickness);
   write_member_words(file, "/failures", counts.failures);
   if (!counts.warnings.empty()) write_member_words(file, "/warnings", counts.warnings);
 }
@@ -146,6 +188,7 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
   counts.release = read_footprints(file, "/members/release", counts.windows);
   counts.flow = read_footprints(file, "/members/flow", counts.windows);
   counts.deposit = read_footprints(file, "/members/deposit", counts.windows);
+  counts.deposit_thickness = read_thickness(file, counts.windows);
   counts.failures = read_member_words(file, "/failures");
   counts.warnings = read_member_words(file, "/warnings");
   check_members(file, counts);

@@ -150,6 +150,8 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
   v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
   describe_runs(v, "member");
+  v.flag("keep_deposits", keep_deposits,
+         "keep each member's map of the deposit's thickness: members.csv has its RMSE against the survey then");
   recipe::table(v, "thresholds", thresholds, "what the probability maps count");
   recipe::table(v, "elevation_error", elevation_error, "the error of the elevation models, another field each member");
   recipe::list(v, "vary", vary, "a key that varies from member to member");

@@ -92,7 +92,8 @@ struct MemberRunOptions {
 struct EnsembleOptions : MemberRunOptions {
   int members = 0;  ///< 0: no ensemble
   Design design = Design::sobol;
-  int levels = 5;  ///< of full_grid and one_at_a_time
+  int levels = 5;              ///< of full_grid and one_at_a_time
+  bool keep_deposits = false;  ///< each member's map of the deposit's thickness
   int seed = 1;
   std::filesystem::path table;  ///< of design = "table"
   ThresholdOptions thresholds;

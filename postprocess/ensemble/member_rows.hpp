@@ -43,8 +43,9 @@ std::string members_csv(const MemberRows& rows, const char* called = "member");
 
 /// Of each member: CSI, hit rate and false alarm ratio of its flow's footprint, and CSI of its deposit's, as
 /// postprocess/score/contingency.hpp has them, on the survey's grid. A cell of that grid is covered where the
-/// footprint covers more than half of it. Of a surveyed change the cells that were released are left out of the
-/// deposit, for what lies there is no gain of height.
+/// footprint covers more than half of it. Where the thickness of the members' deposits was kept, its root mean square
+/// and mean error too, over the cells where either exceeds the threshold. Of a surveyed change the cells that were
+/// released are left out of the deposit, for what lies there is no gain of height.
 std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& survey, double deposit_threshold);
 
 }  // namespace talus::postprocess

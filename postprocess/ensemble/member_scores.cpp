@@ -1,10 +1,15 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Footprints of members against the survey.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "common/gis/resampling.hpp"
 #include "common/stage/in_threads.hpp"
+#include "common/stage/stage.hpp"
 #include "postprocess/ensemble/member_rows.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/survey/survey_grid.hpp"
@@ -19,6 +24,15 @@ std::vector<double> on_survey(const Footprint& footprint, const MapGrid& from, c
   for (double& value : share)
     if (!(value > 0)) value = 0;
   return share;
+}
+
+/// A member's deposit on the survey's grid [m]; where the run's map ends, and where the survey holds nothing to
+/// compare with, as the scores of a single run have it.
+std::vector<double> deposit_on_survey(const KeptThickness& deposit, const MapGrid& from, const MapGrid& to) {
+  std::vector<double> thickness = on_grid({from, deposit.thickness(from.count())}, to);
+  for (double& h : thickness)
+    if (std::isnan(h)) h = 0;
+  return thickness;
 }
 
 /// The surveyed deposit where members' footprints can be compared with it.
@@ -46,6 +60,11 @@ std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& sur
       {ColumnKind::score, "footprint_false_alarm_ratio", "1", "false alarms of the " + words, none, {}}};
   RowColumn of_deposit{
       ColumnKind::score, "deposit_csi", "1", "critical success index of the deposit's " + words, none, {}};
+  const std::string against = fmt::format("the deposit's thickness against {}", survey.name);
+  std::vector<RowColumn> of_thickness{
+      {ColumnKind::score, "thickness_rmse_m", "m", "root mean square error of " + against, none, {}},
+      {ColumnKind::score, "thickness_bias_m", "m", "mean error of " + against, none, {}}};
+  const bool has_thickness = std::ranges::any_of(counts.deposit_thickness, [](const auto& one) { return one.kept(); });
   in_threads(counts.states.size(), "scoring the members", [&](std::size_t k) {
     if (counts.states[k] != MemberState::counted) return;
     if (!survey.footprint.empty()) {
@@ -59,10 +78,20 @@ std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& sur
       of_deposit.values[k] =
           compare(on_survey(counts.deposit[k], counts.scene.grid, survey.grid), 0.5, deposit, deposit_threshold, area)
               .csi();
+    if (!deposit.empty() && counts.deposit_thickness[k].kept()) {
+      const ThicknessError error = thickness_error(
+          deposit_on_survey(counts.deposit_thickness[k], counts.scene.grid, survey.grid), deposit, deposit_threshold);
+      of_thickness[0].values[k] = error.rmse;
+      of_thickness[1].values[k] = error.bias;
+    }
   });
   std::vector<RowColumn> columns;
   if (!survey.footprint.empty()) columns = std::move(flow);
   if (!deposit.empty()) columns.push_back(std::move(of_deposit));
+  if (!deposit.empty() && has_thickness)
+    std::move(of_thickness.begin(), of_thickness.end(), std::back_inserter(columns));
+  if (!deposit.empty() && !has_thickness)
+    log_info("the members' deposits were not kept: no thickness_rmse_m ([ensemble] keep_deposits = true keeps them)");
   return columns;
 }
 

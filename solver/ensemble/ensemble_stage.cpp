@@ -51,6 +51,7 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
   }
   for (const MemberWords& failure : e.table.failures) text += fmt::format("{} has no domain\n", failure.member);
   if (e.edge_fails) text += "who comes to an edge fails\n";
+  if (e.options.keep_deposits) text += "deposits are kept\n";
   if (e.table.slides)
     for (const std::string& id : e.table.slides->domains) text += id + "\n";
   text += fact(e.table.provenance, base_domain_id) + fmt::format(" {} {}", e.table.design, e.table.seed);
@@ -257,6 +258,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
   if (context.check_only) return {};
   EnsembleCounts counts = fresh_counts(context, e, domain, base, facts);
   take_up(e, flags, counts);
+  counts.keeps_deposits = e.options.keep_deposits;
   const auto unfinished = e.paths.unfinished(e.part);
   const OwnEnd saving("finished members are saved");
   keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);

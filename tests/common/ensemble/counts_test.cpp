@@ -109,6 +109,53 @@ TEST(CountsFile, comes_back_as_it_was_written) {
   EXPECT_EQ(read.scene.release_thickness, counts.scene.release_thickness);
 }
 
+TEST(CountsFile, keeps_deposits_of_members_where_that_is_asked_for) {
+  const test::Scratch scratch;
+  const MemberTable table = test::ensemble_table(12);
+  const auto part = [&](const MemberRange& range, bool keeps) {
+    EnsembleCounts counts = empty_counts(test::ensemble_scene(), 12, range, {});
+    counts.fingerprint = "f";
+    counts.keeps_deposits = keeps;
+    for (std::int64_t k = range.first; k < range.end; ++k)
+      if (k == 4) {
+        counts.fail(k, "too fast");
+      } else {
+        counts.add(k, test::member_maps(counts.scene, test::reach_of(table, k), test::depth_of(table, k)), {});
+      }
+    write_counts(scratch / "counts.h5", counts);
+    return read_counts(scratch / "counts.h5");
+  };
+  const EnsembleCounts all = merged({part({6, 12}, false), part({0, 6}, true)}, {"b", "a"});
+  const std::size_t cells = all.scene.grid.count();
+  for (const std::int64_t k : {0, 1, 2, 3, 5}) {
+    SCOPED_TRACE(k);
+    const KeptThickness& kept = all.deposit_thickness[static_cast<std::size_t>(k)];
+    ASSERT_TRUE(kept.kept());
+    const RunMaps maps = test::member_maps(all.scene, test::reach_of(table, k), test::depth_of(table, k));
+    const std::vector<double> thickness = kept.thickness(cells);
+    double most = 0;
+    for (std::size_t c = 0; c < cells; ++c) {
+      EXPECT_NEAR(thickness[c], maps.deposit_thickness[c], 0.5001 * KeptThickness::quantum);
+      most = std::max(most, thickness[c]);
+    }
+    EXPECT_GT(most, 0.1);
+  }
+  EXPECT_FALSE(all.deposit_thickness[4].kept()) << "failed";
+  EXPECT_FALSE(all.deposit_thickness[7].kept()) << "of a part that keeps none";
+  EXPECT_EQ(keep_thickness(std::vector<double>(9, 0.0)).thickness(9), std::vector<double>(9, 0.0));
+}
+
+TEST(CountsFile, whose_deposits_are_not_of_their_footprints_is_refused) {
+  const test::Scratch scratch;
+  EnsembleCounts counts = empty_counts(test::ensemble_scene(), 1, {0, 1}, {});
+  counts.keeps_deposits = true;
+  counts.add(0, test::member_maps(counts.scene, 12, 2), {});
+  counts.deposit_thickness[0].values.pop_back();
+  write_counts(scratch / "counts.h5", counts);
+  const std::string fault = test::fault_of<DataError>([&] { read_counts(scratch / "counts.h5"); });
+  EXPECT_NE(fault.find("/members/deposit_thickness/values has"), std::string::npos) << fault;
+}
+
 /// Written by the program before these numbers were there.
 TEST(CountsFile, without_99th_percentiles_is_read_and_knows_none) {
   const EnsembleCounts old = read_counts(fs::path(TALUS_SOURCE_DIR) / "tests/golden/counts-2-without-p99.h5");

@@ -203,6 +203,45 @@ TEST_F(EnsembleProducts, score_every_member_against_the_survey) {
     }
 }
 
+TEST_F(EnsembleProducts, say_how_far_every_kept_deposit_is_from_the_surveyed_thickness) {
+  write_members();
+  EnsembleCounts counts = empty_counts(test::ensemble_scene(), 40, {0, 40}, {});
+  counts.fingerprint = "f";
+  counts.keeps_deposits = true;
+  for (std::int64_t k = 0; k < 40; ++k)
+    counts.add(k, test::member_maps(counts.scene, test::reach_of(table_, k), test::depth_of(table_, k)),
+               test::result_of(table_, k));
+  write_counts(out_ / "counts.h5", counts);
+  const EnsembleScene scene = test::ensemble_scene();
+  Raster surveyed{scene.grid, std::vector<double>(scene.grid.count(), 0.0)};
+  for (int row = 4; row < 9; ++row)
+    for (int column = 8; column < 20; ++column) surveyed.at(column, row) = 0.1 * column;
+  write_geotiff(scratch_ / "survey.tif", surveyed, {"", "m", {}});
+  recipe_ += "[postprocess]\ndeposit_threshold_m = 0.5\n[postprocess.survey]\nthickness = \"survey.tif\"\n";
+  run_it();
+  std::istringstream lines(test::text_of(out_ / "members.csv"));
+  std::string line;
+  std::getline(lines, line);
+  ASSERT_TRUE(line.ends_with(",deposit_csi,thickness_rmse_m,thickness_bias_m,failure,warnings")) << line;
+  for (int k = 0; std::getline(lines, line); ++k) {
+    const RunMaps maps = test::member_maps(scene, test::reach_of(table_, k), test::depth_of(table_, k));
+    double squares = 0, sum = 0, cells = 0;
+    for (std::size_t c = 0; c < surveyed.values.size(); ++c) {
+      const double here = maps.deposit_thickness[c], there = surveyed.values[c];
+      if (!(here > 0.5 || there > 0.5)) continue;
+      squares += (here - there) * (here - there);
+      sum += here - there;
+      cells += 1;
+    }
+    double rmse = 0, bias = 0;
+    const std::size_t bias_at = line.rfind(',', line.size() - 3), rmse_at = line.rfind(',', bias_at - 1);
+    bias = std::stod(line.substr(bias_at + 1));
+    rmse = std::stod(line.substr(rmse_at + 1));
+    EXPECT_NEAR(rmse, std::sqrt(squares / cells), KeptThickness::quantum) << line;
+    EXPECT_NEAR(bias, sum / cells, KeptThickness::quantum) << line;
+  }
+}
+
 TEST_F(EnsembleProducts, are_in_one_netcdf_file_with_thresholds_as_coordinates_and_members_as_a_group) {
   write_members();
   write_part({0, 40}, "counts.h5");

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/ensemble/kept_thickness.hpp"
+
+#include <cmath>
+
+namespace talus {
+
+KeptThickness keep_thickness(std::span<const double> thickness) {
+  KeptThickness kept{footprint_of(thickness, 0), {}};
+  kept.values.reserve(cells_inside(kept.cells));
+  for (const double h : thickness)
+    if (h > 0) kept.values.push_back(static_cast<std::int32_t>(std::lround(h / KeptThickness::quantum)));
+  return kept;
+}
+
+std::size_t cells_inside(const Footprint& footprint) {
+  std::size_t inside = 0;
+  for (std::size_t run = 1; run < footprint.size(); run += 2) inside += static_cast<std::size_t>(footprint[run]);
+  return inside;
+}
+
+std::vector<double> KeptThickness::thickness(std::size_t count) const {
+  const std::vector<std::uint8_t> inside = cells_of(cells, count);
+  std::vector<double> map(count, 0.0);
+  std::size_t next = 0;
+  for (std::size_t cell = 0; cell < count; ++cell)
+    if (inside[cell] != 0) map[cell] = quantum * values[next++];
+  return map;
+}
+
+}  // namespace talus
