@@ -77,11 +77,11 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         steps_ahead(clock), [&] { step(); }, [&] { clock_.pass_in(); }, [&] { close(); });
     BatchReport report;
     clock = clock_.read();
-    const int halt = clock.halt;
+    int halt = clock.halt;
     this->measured_ = halt == at_event && recording_.has_company();
-    if (halt == at_event && !recording_.has_company()) look_back();
+    if (halt == at_event && !recording_.has_company()) look_back(clock_.data());
     if (halt == wants_sort) expected_ = clock.steps_since_sort;
-    // A sort comes before an event of the same time (Clock::begin_step), and the event's records see who has left.
+    // A sort comes before an event of the same time (Clock::halt_where_due), whose records see who has left.
     if (halt == wants_sort || (halt == at_event && clock.outflow_count > 0)) {
       report.outflow_volume = clock.outflow_volume;
       report.outflow_count = clock.outflow_count;
@@ -93,7 +93,13 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       clock.halt = clock.request = running;
       report.sorted = true;
     }
+    const bool is_still_due = halt == wants_sort && clock.time >= clock.next_event;
+    if (is_still_due) clock.halt_where_due();
     clock_.write(clock);
+    if (is_still_due) {
+      halt = clock.halt;
+      look_back(nullptr);
+    }
     report.can_be_saved = report.sorted || !Device::is_gpu;
     report.clock = clock;
     report.clock.halt = halt;
@@ -160,14 +166,15 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     for_each(device_, 1, CloseBatch{clock_.data()});
     clock_.pass_out();
     if (!recording_.has_company()) return;
-    look_back();
+    look_back(clock_.data());
     this->start_measures();
   }
 
-  /// The method records the maps of speed and pressure where the batch has halted at an event.
-  void look_back() {
+  /// The method records the maps of speed and pressure where the clock has halted at an event, or at once where it is
+  /// null.
+  void look_back(const Clock* clock) {
     this->measure_columns();
-    this->sum_motion(clock_.data());
+    this->sum_motion(clock);
     this->record_motion();
   }
 
