@@ -41,7 +41,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
  public:
   ExplicitSolverOf(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                    const SolverState& state)
-      : Base(device, scene, settings, state, needs(settings), drift_between_sorts<Device>(settings.deterministic)),
+      : Base(device, scene, settings, state, needs(settings),
+             drift_between_sorts<Device>(settings.deterministic, has_company(device))),
         recording_(device, Base::starts_with_others()),
         affine_(settings.transfer.affine),
         musl_(settings.transfer.remaps_velocity),

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // GPU devices: streams, memory, events, recordings. Without a CUDA compiler this file states that there is no GPU.
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -92,9 +91,6 @@ void GpuState::wait(const char* what) {
 GpuDevice GpuDevice::make(int index) { return GpuDevice(std::make_shared<GpuState>(index)); }
 
 int GpuDevice::count() {
-  // Streams share this many queues, 8 unless told. The first call of CUDA reads it.
-  static const int told = setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
-  static_cast<void>(told);
   int count = 0;
   if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
   (void)cudaGetLastError();

@@ -56,6 +56,11 @@ class IntoList {
 };
 }  // namespace detail
 
+/// Whether other runs start their kernels with those of a device (share_starts()).
+inline bool has_company(const CpuDevice&) { return false; }
+/// On a GPU they may.
+inline bool has_company(const GpuDevice& device) { return detail::gpu_together(device) != nullptr; }
+
 /// On a GPU work is recorded as a CUDA graph, and started as a whole from the second time on; or as a list of kernels
 /// that are started with those of other runs, where the device shares its GPU with some (share_starts()).
 template <>
@@ -93,7 +98,7 @@ class Recording<GpuDevice> {
     begun_ = begun_ || times > 0;
   }
   /// Whether the work is started with that of other runs.
-  bool has_company() const { return with_others_ && detail::gpu_together(device_) && !device_.profile().on(); }
+  bool has_company() const { return with_others_ && talus::has_company(device_) && !device_.profile().on(); }
   /// The method gives up the recording, because arguments have changed.
   void forget() { recorded_ = listed_ = false; }
 
