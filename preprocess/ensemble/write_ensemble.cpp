@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <regex>
-#include <thread>
 
 #include "common/domain/domain_facts.hpp"
 #include "common/domain/threads.hpp"
@@ -17,6 +16,7 @@
 #include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
 #include "common/stage/console.hpp"
+#include "common/stage/in_threads.hpp"
 #include "common/stage/machine.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
 
@@ -24,8 +24,6 @@ namespace talus::preprocess {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int most_threads = 16;  // as many files are written aside at once at most
 
 /// The members' domains while they are made: shared by threads.
 class MemberDomains {
@@ -46,7 +44,7 @@ class MemberDomains {
   std::vector<std::int64_t> points() const;
 
  private:
-  void work();
+  void work(std::int64_t member);
   void make(std::int64_t member);
   bool is_there(const fs::path& file, const Facts& marks) const;
   /// What tells a member's domain from the base's: its values, and its field.
@@ -77,11 +75,9 @@ class MemberDomains {
   const EnsembleBase& base_;
   EnsemblePaths paths_;
   std::vector<std::int64_t> todo_;
-  std::atomic<std::size_t> next_{0};
   std::atomic<std::int64_t> made_{0}, kept_{0};
   std::atomic<bool> stop_{false};
   mutable std::mutex mutex_;
-  std::exception_ptr fault_;
   std::vector<Fault> faults_;                     // of slides, of which all are told
   std::map<std::int64_t, std::string> failures_;  // of an ensemble, whose other members are made
   std::vector<std::int64_t> points_;
@@ -250,34 +246,18 @@ void MemberDomains::say_failures() const {
               "Mend what makes them fail, narrow the distributions, or raise failed_share"});
 }
 
-void MemberDomains::work() {
-  for (;;) {
-    const std::size_t place = next_++;
-    if (place >= todo_.size() || stop_) return;
-    const std::int64_t member = todo_[place];
-    std::exception_ptr fault;
-    try {
-      stop_if_interrupted(fmt::format("making the domain of member {}; those that are finished are kept", member));
-      make(member);
-    } catch (const RecipeError& error) {
-      fault = std::make_exception_ptr(RecipeError(with_member(error, plan_.table, member)));
-    } catch (const DataError& error) {
-      if (plan_.table.slides) {
-        note_faults(with_member(error, plan_.table, member));
-        continue;
-      }
-      fault = std::make_exception_ptr(DataError(with_member(error, plan_.table, member)));
-    } catch (...) {
-      fault = std::current_exception();
-    }
-    const std::lock_guard lock(mutex_);
-    if (fault) {
-      stop_ = true;
-      if (!fault_) fault_ = fault;
-    } else if (progress_.due()) {
-      progress_.update(fmt::format("domains of members {}/{}", made_ + kept_, todo_.size()));
-    }
+void MemberDomains::work(std::int64_t member) {
+  if (stop_) return;
+  try {
+    make(member);
+  } catch (const RecipeError& error) {
+    throw RecipeError(with_member(error, plan_.table, member));
+  } catch (const DataError& error) {
+    if (!plan_.table.slides) throw DataError(with_member(error, plan_.table, member));
+    return note_faults(with_member(error, plan_.table, member));
   }
+  const std::lock_guard lock(mutex_);
+  if (progress_.due()) progress_.update(fmt::format("domains of members {}/{}", made_ + kept_, todo_.size()));
 }
 
 void MemberDomains::say_end(double seconds) const {
@@ -297,13 +277,13 @@ void MemberDomains::make_all() {
   make_folder(paths_.folder());
   const auto began = std::chrono::steady_clock::now();
   {
-    const int limit = std::max(thread_limit(), 1);
-    const auto count = std::min(todo_.size(), static_cast<std::size_t>(std::min(limit, most_threads)));
-    const ThreadsOfLibraries who_is_left(limit - static_cast<int>(count) + 1);
-    std::vector<std::jthread> threads;
-    for (std::size_t t = 0; t < count; ++t) threads.emplace_back([this] { work(); });
+    const std::size_t limit = static_cast<std::size_t>(std::max(thread_limit(), 1)),
+                      count = std::min({todo_.size(), limit, most_threads_that_write});
+    const ThreadsOfLibraries who_is_left(static_cast<int>(limit - count) + 1);
+    in_threads(
+        todo_.size(), "making the domains of members; those that are finished are kept",
+        [this](std::size_t place) { work(todo_[place]); }, most_threads_that_write);
   }
-  if (fault_) std::rethrow_exception(fault_);
   if (!faults_.empty()) throw DataError(std::move(faults_));
   say_failures();
   say_end(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
