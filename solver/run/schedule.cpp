@@ -33,7 +33,7 @@ double Schedule::next_event(double time, const RunMemory& passed) const {
     if (change > just_after(time)) next = std::min(next, change);
   }
   if (expects_pulses(passed)) next = std::min(next, pulses_[static_cast<std::size_t>(passed.pulses)]);
-  return next;
+  return just_after(next) >= end_time_ ? end_time_ : next;
 }
 
 bool Schedule::record_due(double time, const RunMemory& passed) const {

@@ -28,6 +28,20 @@ TEST(Schedule, next_event_is_the_first_of_record_frame_and_end) {
   EXPECT_EQ(schedule.next_event(6, passed), 7);
 }
 
+TEST(Schedule, end_and_an_event_a_rounding_before_it_are_one) {
+  SolveOptions o = some_options();
+  o.history_interval = 0.3;
+  o.end_time = 5.4;
+  ASSERT_LT(18 * o.history_interval, o.end_time);
+  const Schedule schedule(o);
+  RunMemory passed;
+  passed.frames = 4;
+  passed.records = 18;
+  EXPECT_EQ(schedule.next_event(5.2, passed), 5.4);
+  passed.records = 17;
+  EXPECT_EQ(schedule.next_event(5.0, passed), 17 * 0.3);
+}
+
 TEST(Schedule, no_step_goes_over_a_wall_or_load_that_comes_or_goes) {
   SolveOptions o = some_options();
   o.walls.resize(1);
