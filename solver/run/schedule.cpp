@@ -53,7 +53,7 @@ bool Schedule::checkpoint_due(double time, const RunMemory& passed) const {
 }
 
 bool Schedule::ends_between_frames(double time, const RunMemory& passed) const {
-  return time > at_count(passed.frames - 1, frame_interval_);
+  return time > just_after(at_count(passed.frames - 1, frame_interval_));
 }
 
 }  // namespace talus::solver

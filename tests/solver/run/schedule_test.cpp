@@ -40,6 +40,11 @@ TEST(Schedule, end_and_an_event_a_rounding_before_it_are_one) {
   EXPECT_EQ(schedule.next_event(5.2, passed), 5.4);
   passed.records = 17;
   EXPECT_EQ(schedule.next_event(5.0, passed), 17 * 0.3);
+  o.frame_interval = 0.3;
+  passed.frames = 18;
+  EXPECT_TRUE(Schedule(o).ends_between_frames(5.4, passed));
+  passed.frames = 19;
+  EXPECT_FALSE(Schedule(o).ends_between_frames(5.4, passed)) << "the frame of the end is there";
 }
 
 TEST(Schedule, no_step_goes_over_a_wall_or_load_that_comes_or_goes) {
