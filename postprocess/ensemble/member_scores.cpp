@@ -26,8 +26,8 @@ std::vector<double> on_survey(const Footprint& footprint, const MapGrid& from, c
   return share;
 }
 
-/// A member's deposit on the survey's grid [m]; where the run's map ends, and where the survey holds nothing to
-/// compare with, as the scores of a single run have it.
+/// The thickness of a member's deposit on the survey's grid [m]; 0 where the run's map ends, as the scores of a single
+/// run have it.
 std::vector<double> deposit_on_survey(const KeptThickness& deposit, const MapGrid& from, const MapGrid& to) {
   std::vector<double> thickness = on_grid({from, deposit.thickness(from.count())}, to);
   for (double& h : thickness)
