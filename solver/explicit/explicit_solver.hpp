@@ -93,14 +93,13 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
       clock.steps_between_sorts = steps_between_sorts();  // as a run would have it that goes on from here
       clock.halt = clock.request = running;
       report.sorted = true;
+      if (halt == wants_sort && clock.time >= clock.next_event) {
+        clock.halt_where_due();
+        halt = clock.halt;
+        look_back(nullptr);
+      }
     }
-    const bool is_still_due = halt == wants_sort && clock.time >= clock.next_event;
-    if (is_still_due) clock.halt_where_due();
     clock_.write(clock);
-    if (is_still_due) {
-      halt = clock.halt;
-      look_back(nullptr);
-    }
     report.can_be_saved = report.sorted || !Device::is_gpu;
     report.clock = clock;
     report.clock.halt = halt;
