@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/ensemble/footprint.hpp"
 #include "common/ensemble/kept_cells.hpp"
 #include "common/ensemble/kept_thickness.hpp"
 #include "common/ensemble/member_words.hpp"

@@ -86,13 +86,13 @@ std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vecto
   const auto values = file.read_list<std::int32_t>(path);
   h5::check_values<std::int32_t>(file, path, values, h5::not_negative);
   std::size_t inside = 0;
-  for (const Footprint& one : cells) inside += cells_inside(one);
+  for (const Footprint& one : cells) inside += covered_cells(one);
   if (inside != values.size())
     file.refuse(fmt::format("dataset {} has {} values", path, values.size()),
                 fmt::format("its footprints have {} cells inside", inside));
   auto next = values.begin();
   for (std::size_t k = 0; k < members.size(); ++k) {
-    const auto end = next + static_cast<std::ptrdiff_t>(cells_inside(cells[k]));
+    const auto end = next + static_cast<std::ptrdiff_t>(covered_cells(cells[k]));
     members[k] = {cells[k], {next, end}};
     next = end;
   }

@@ -8,16 +8,10 @@ namespace talus {
 
 KeptThickness keep_thickness(std::span<const double> thickness) {
   KeptThickness kept{footprint_of(thickness, 0), {}};
-  kept.values.reserve(cells_inside(kept.cells));
+  kept.values.reserve(covered_cells(kept.cells));
   for (const double h : thickness)
     if (h > 0) kept.values.push_back(static_cast<std::int32_t>(std::lround(h / KeptThickness::quantum)));
   return kept;
-}
-
-std::size_t cells_inside(const Footprint& footprint) {
-  std::size_t inside = 0;
-  for (std::size_t run = 1; run < footprint.size(); run += 2) inside += static_cast<std::size_t>(footprint[run]);
-  return inside;
 }
 
 std::vector<double> KeptThickness::thickness(std::size_t count) const {

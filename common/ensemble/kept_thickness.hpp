@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "common/ensemble/tally.hpp"
+#include "common/ensemble/footprint.hpp"
 
 namespace talus {
 
@@ -26,8 +26,5 @@ struct KeptThickness {
 
 /// Keeps a map of thickness [m]; NaN is nothing.
 KeptThickness keep_thickness(std::span<const double> thickness);
-
-/// The number of cells inside a footprint.
-std::size_t cells_inside(const Footprint& footprint);
 
 }  // namespace talus

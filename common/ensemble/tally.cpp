@@ -152,29 +152,4 @@ double MapTally::quantile(const CountedMap& map, std::size_t cell, double share,
   return map.quantum * static_cast<double>(edges.back()) * map.ratio;
 }
 
-Footprint footprint_of(std::span<const double> thickness, double threshold) {
-  Footprint runs{0};
-  bool inside = false;
-  for (const double h : thickness) {
-    if ((h > threshold) != inside) {
-      inside = !inside;
-      runs.push_back(0);
-    }
-    ++runs.back();
-  }
-  return runs;
-}
-
-std::vector<std::uint8_t> cells_of(const Footprint& footprint, std::size_t cells) {
-  std::vector<std::uint8_t> inside;
-  inside.reserve(cells);
-  std::uint8_t value = 0;
-  for (const std::int32_t length : footprint) {
-    inside.insert(inside.end(), static_cast<std::size_t>(length), value);
-    value = value == 0 ? 1 : 0;
-  }
-  inside.resize(cells, 0);
-  return inside;
-}
-
 }  // namespace talus

@@ -110,12 +110,4 @@ struct MapTally {
   double quantile(const CountedMap& map, std::size_t cell, double share, std::int64_t members) const;
 };
 
-/// Which cells a member's flow or deposit covers: lengths of runs of cells over the flat grid, the first outside, the
-/// second inside, and so on.
-using Footprint = std::vector<std::int32_t>;
-
-/// The footprint of what is thicker than `threshold` [m]; and back, 1 inside [cells].
-Footprint footprint_of(std::span<const double> thickness, double threshold);
-std::vector<std::uint8_t> cells_of(const Footprint& footprint, std::size_t cells);
-
 }  // namespace talus

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/ensemble/counts.hpp"
+#include "common/ensemble/footprint.hpp"
 
 namespace talus::postprocess {
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/footprint.hpp"
 #include "common/gis/resampling.hpp"
 #include "common/stage/in_threads.hpp"
 #include "common/stage/stage.hpp"
@@ -45,54 +46,87 @@ std::vector<double> comparable_deposit(const Survey& survey, const EnsembleScene
   return deposit;
 }
 
+/// The scores of all members against one survey, one column each.
+class Scores {
+ public:
+  Scores(const EnsembleCounts& counts, const Survey& survey, double deposit_threshold);
+  /// Writes the scores of member k; different members may be scored at the same time.
+  void score(std::size_t k);
+  /// The columns that have something to compare with.
+  std::vector<RowColumn> columns();
+
+ private:
+  const EnsembleCounts& counts_;
+  const Survey& survey_;
+  std::vector<double> surveyed_deposit_;
+  double deposit_threshold_;
+  double cell_area_;
+  std::vector<RowColumn> flow_;       // overlap of the footprint of the flow
+  std::vector<RowColumn> deposit_;    // overlap of the footprint of the deposit
+  std::vector<RowColumn> thickness_;  // errors of the deposit's thickness
+};
+
+Scores::Scores(const EnsembleCounts& counts, const Survey& survey, double deposit_threshold)
+    : counts_(counts),
+      survey_(survey),
+      surveyed_deposit_(comparable_deposit(survey, counts.scene)),
+      deposit_threshold_(deposit_threshold),
+      cell_area_(survey.grid.cell * survey.grid.cell) {
+  const std::string footprint =
+      fmt::format("footprint (thicker than {:g} m) against {}", counts.scene.threshold, survey.name);
+  const std::string thickness = fmt::format("the deposit's thickness against {}", survey.name);
+  const std::vector<double> none(counts.states.size(), nan);
+  flow_ = {{ColumnKind::score, "footprint_csi", "1", "critical success index of the " + footprint, none, {}},
+           {ColumnKind::score, "footprint_hit_rate", "1", "hit rate of the " + footprint, none, {}},
+           {ColumnKind::score, "footprint_false_alarm_ratio", "1", "false alarms of the " + footprint, none, {}}};
+  deposit_ = {
+      {ColumnKind::score, "deposit_csi", "1", "critical success index of the deposit's " + footprint, none, {}}};
+  thickness_ = {{ColumnKind::score, "thickness_rmse_m", "m", "root mean square error of " + thickness, none, {}},
+                {ColumnKind::score, "thickness_bias_m", "m", "mean error of " + thickness, none, {}}};
+}
+
+void Scores::score(std::size_t k) {
+  const MapGrid& from = counts_.scene.grid;
+  const MapGrid& to = survey_.grid;
+  if (!survey_.footprint.empty()) {
+    const Contingency here =
+        compare(on_survey(counts_.flow[k], from, to), 0.5, survey_.footprint, survey_.footprint_threshold, cell_area_);
+    flow_[0].values[k] = here.csi();
+    flow_[1].values[k] = here.hit_rate();
+    flow_[2].values[k] = here.false_alarm_ratio();
+  }
+  if (surveyed_deposit_.empty()) return;
+  deposit_[0].values[k] =
+      compare(on_survey(counts_.deposit[k], from, to), 0.5, surveyed_deposit_, deposit_threshold_, cell_area_).csi();
+  if (!counts_.deposit_thickness[k].kept()) return;
+  const ThicknessError error =
+      thickness_error(deposit_on_survey(counts_.deposit_thickness[k], from, to), surveyed_deposit_, deposit_threshold_);
+  thickness_[0].values[k] = error.rmse;
+  thickness_[1].values[k] = error.bias;
+}
+
+std::vector<RowColumn> Scores::columns() {
+  std::vector<RowColumn> columns;
+  const auto add = [&](std::vector<RowColumn>& more) { std::ranges::move(more, std::back_inserter(columns)); };
+  if (!survey_.footprint.empty()) add(flow_);
+  if (surveyed_deposit_.empty()) return columns;
+  add(deposit_);
+  if (std::ranges::any_of(counts_.deposit_thickness, [](const KeptThickness& one) { return one.kept(); }))
+    add(thickness_);
+  else
+    log_info("the members' deposits were not kept: no thickness_rmse_m ([ensemble] keep_deposits = true keeps them)");
+  return columns;
+}
+
 }  // namespace
 
 std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& survey, double deposit_threshold) {
   const EnsembleCounts& counts = ensemble.counts;
-  const std::vector<double> deposit = comparable_deposit(survey, counts.scene);
-  const std::string words =
-      fmt::format("footprint (thicker than {:g} m) against {}", counts.scene.threshold, survey.name);
-  const double area = survey.grid.cell * survey.grid.cell;
-  const std::vector<double> none(counts.states.size(), nan);
-  std::vector<RowColumn> flow{
-      {ColumnKind::score, "footprint_csi", "1", "critical success index of the " + words, none, {}},
-      {ColumnKind::score, "footprint_hit_rate", "1", "hit rate of the " + words, none, {}},
-      {ColumnKind::score, "footprint_false_alarm_ratio", "1", "false alarms of the " + words, none, {}}};
-  RowColumn of_deposit{
-      ColumnKind::score, "deposit_csi", "1", "critical success index of the deposit's " + words, none, {}};
-  const std::string against = fmt::format("the deposit's thickness against {}", survey.name);
-  std::vector<RowColumn> of_thickness{
-      {ColumnKind::score, "thickness_rmse_m", "m", "root mean square error of " + against, none, {}},
-      {ColumnKind::score, "thickness_bias_m", "m", "mean error of " + against, none, {}}};
-  const bool has_thickness = std::ranges::any_of(counts.deposit_thickness, [](const auto& one) { return one.kept(); });
+  Scores scores(counts, survey, deposit_threshold);
   in_threads(counts.states.size(), "scoring the members", [&](std::size_t k) {
-    if (counts.states[k] != MemberState::counted) return;
-    if (!survey.footprint.empty()) {
-      const Contingency here = compare(on_survey(counts.flow[k], counts.scene.grid, survey.grid), 0.5, survey.footprint,
-                                       survey.footprint_threshold, area);
-      flow[0].values[k] = here.csi();
-      flow[1].values[k] = here.hit_rate();
-      flow[2].values[k] = here.false_alarm_ratio();
-    }
-    if (!deposit.empty())
-      of_deposit.values[k] =
-          compare(on_survey(counts.deposit[k], counts.scene.grid, survey.grid), 0.5, deposit, deposit_threshold, area)
-              .csi();
-    if (!deposit.empty() && counts.deposit_thickness[k].kept()) {
-      const ThicknessError error = thickness_error(
-          deposit_on_survey(counts.deposit_thickness[k], counts.scene.grid, survey.grid), deposit, deposit_threshold);
-      of_thickness[0].values[k] = error.rmse;
-      of_thickness[1].values[k] = error.bias;
-    }
+    if (counts.states[k] == MemberState::counted) scores.score(k);
   });
-  std::vector<RowColumn> columns;
-  if (!survey.footprint.empty()) columns = std::move(flow);
-  if (!deposit.empty()) columns.push_back(std::move(of_deposit));
-  if (!deposit.empty() && has_thickness)
-    std::move(of_thickness.begin(), of_thickness.end(), std::back_inserter(columns));
-  if (!deposit.empty() && !has_thickness)
-    log_info("the members' deposits were not kept: no thickness_rmse_m ([ensemble] keep_deposits = true keeps them)");
-  return columns;
+  return scores.columns();
 }
 
 }  // namespace talus::postprocess

@@ -3,6 +3,7 @@
 // The outlines of the page of an ensemble.
 #include <cmath>
 
+#include "common/ensemble/footprint.hpp"
 #include "common/map/isolines.hpp"
 #include "common/stage/in_threads.hpp"
 #include "postprocess/ensemble/page.hpp"

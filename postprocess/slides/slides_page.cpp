@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/ensemble/footprint.hpp"
 #include "common/map/crop.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/report/pack.hpp"

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/footprint.hpp"
 #include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
 #include "common/gis/raster_writer.hpp"
