@@ -13,50 +13,50 @@ namespace talus::solver {
 namespace {
 
 /// This function declares where the line lies.
-void describe_line(recipe::Visitor& v, InflowOptions& o, const std::string& place) {
+void describe_line(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
   v.numbers("x_m", o.x, recipe::any, "map coordinates of the two ends of the line that material enters through, east");
   v.numbers("y_m", o.y, recipe::any, "the same, north");
   v.text("place", o.place,
          "instead of both: [[preprocess.place]] of this name; its line called name, or the only one that it has");
   v.needs(!o.place.empty() || (o.x.size() == 2 && o.y.size() == 2),
-          {fmt::format("{} has {} values of x_m and {} of y_m", place, o.x.size(), o.y.size()),
+          {fmt::format("{} has {} values of x_m and {} of y_m", shown, o.x.size(), o.y.size()),
            "it enters through a straight line between two points",
            "Give two of each, or place = \"...\" for a line of a vector file"});
   v.needs(o.place.empty() || (o.x.empty() && o.y.empty()),
-          {fmt::format("{} has place = \"{}\" beside x_m or y_m", place, o.place), "either says where it enters",
+          {fmt::format("{} has place = \"{}\" beside x_m or y_m", shown, o.place), "either says where it enters",
            "Leave one of them out"});
   v.needs(o.x.size() != 2 || o.y.size() != 2 || o.x[0] != o.x[1] || o.y[0] != o.y[1],
-          {place + ": both ends of the line are one point", "a line of no length lets nothing through",
+          {shown + ": both ends of the line are one point", "a line of no length lets nothing through",
            "Move one of them: x_m = [west, east], y_m = [south, north]"});
 }
 
 /// This function declares the hydrograph: a file, or two lists.
-void describe_hydrograph(recipe::Visitor& v, InflowOptions& o, const std::string& place) {
+void describe_hydrograph(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
   v.path("file", o.file, "hydrograph: a table of time_s and discharge_m3_s (docs/reference/formats.md); or the lists");
   v.numbers("times_s", o.times, recipe::not_negative, "hydrograph without a file: times, growing");
   v.numbers("discharges_m3_s", o.discharges, recipe::not_negative,
             "discharges at those times, straight lines between; none before the first and after the last");
   v.needs(o.file.empty() != (o.times.empty() && o.discharges.empty()),
-          {o.file.empty() ? place + ": neither file nor times_s with discharges_m3_s is given"
-                          : place + ": file beside times_s or discharges_m3_s",
+          {o.file.empty() ? shown + ": neither file nor times_s with discharges_m3_s is given"
+                          : shown + ": file beside times_s or discharges_m3_s",
            "the hydrograph is one or the other", "Give one of them"});
   v.needs(
       o.times.size() == o.discharges.size(),
-      {fmt::format("{} has {} values of times_s and {} of discharges_m3_s", place, o.times.size(), o.discharges.size()),
+      {fmt::format("{} has {} values of times_s and {} of discharges_m3_s", shown, o.times.size(), o.discharges.size()),
        "each discharge has its time", "Give as many of one as of the other"});
   v.needs(o.file.empty() ? o.times.empty() || o.times.size() >= 2 : true,
-          {place + " has one time", "a hydrograph has two rows at least",
+          {shown + " has one time", "a hydrograph has two rows at least",
            "Give a constant discharge as two rows: times_s = [0, 60], discharges_m3_s = [10, 10]"});
   const auto late = std::adjacent_find(o.times.begin(), o.times.end(), [](double a, double b) { return !(b > a); });
   v.needs(late == o.times.end(),
           {late == o.times.end() ? std::string()
-                                 : fmt::format("{}: times_s has {:g} before {:g}", place, *late, *(late + 1)),
+                                 : fmt::format("{}: times_s has {:g} before {:g}", shown, *late, *(late + 1)),
            "times must grow from row to row", "Sort the rows; a jump is two rows a moment apart"});
   v.number("scale", o.scale, recipe::positive, "factor of the discharges");
 }
 
 /// This function declares how fast the material enters, and which way.
-void describe_motion(recipe::Visitor& v, InflowOptions& o, const std::string& place) {
+void describe_motion(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
   const recipe::Range speeds{0, 100, true, false};
   v.optional_number("speed_m_s", o.speed, speeds, "speed along the ground; the depth follows from the discharge");
   v.optional_number("depth_m", o.depth, recipe::positive,
@@ -64,29 +64,29 @@ void describe_motion(recipe::Visitor& v, InflowOptions& o, const std::string& pl
   v.optional_number("froude", o.froude, recipe::Range{0, 20, true, false},
                     "Froude number; speed and depth follow from the discharge");
   const int given = (o.speed ? 1 : 0) + (o.depth ? 1 : 0) + (o.froude ? 1 : 0);
-  v.needs(given == 1, {fmt::format("{}: {} of speed_m_s, depth_m and froude are given", place, given),
+  v.needs(given == 1, {fmt::format("{}: {} of speed_m_s, depth_m and froude are given", shown, given),
                        "a discharge does not say how fast and how deep it is", "Give exactly one of them"});
   v.optional_number("azimuth_deg", o.azimuth, recipe::Range{-360, 360},
                     "direction of the flow, from north over east; left out: across the line, downhill");
   v.integers("points_per_cell", o.points_per_cell, recipe::Range{1, 64},
              "material points along the flow, across it and in height");
   v.needs(o.points_per_cell.size() == 3,
-          {fmt::format("{}: points_per_cell has {} values", place, o.points_per_cell.size()),
+          {fmt::format("{}: points_per_cell has {} values", shown, o.points_per_cell.size()),
            "it is one number along the flow, one across it, one in height", "The usual is [2, 2, 2]"});
 }
 
 }  // namespace
 
-void InflowOptions::describe(recipe::Visitor& v, const std::string& place, const SolveOptions& all) {
+void InflowOptions::describe(recipe::Visitor& v, const std::string& shown, const SolveOptions& all) {
   v.text("name", name, "under which its material is recorded, and [[solve.part]] knows it; empty = inflow-1, ...");
-  describe_line(v, *this, place);
-  describe_hydrograph(v, *this, place);
-  describe_motion(v, *this, place);
+  describe_line(v, *this, shown);
+  describe_hydrograph(v, *this, shown);
+  describe_motion(v, *this, shown);
   v.needs(abilities_of(all.asked_integrator()).carry_inertia,
-          {place + " does not go with integrator = \"quasi-static\"",
+          {shown + " does not go with integrator = \"quasi-static\"",
            "what enters has a speed, which a sequence of equilibria leaves out",
            "Take integrator = \"auto\", \"explicit\", \"column-implicit\" or \"newmark\""});
-  v.needs(!all.stability.factor_of_safety, {place + " does not go with [solve.stability] factor_of_safety = true",
+  v.needs(!all.stability.factor_of_safety, {shown + " does not go with [solve.stability] factor_of_safety = true",
                                             "a factor of safety is that of a mass at rest", "Leave one of them out"});
 }
 

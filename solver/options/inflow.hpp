@@ -27,9 +27,9 @@ struct InflowOptions {
   std::optional<double> azimuth;               ///< of the flow, from north over east [deg]; none: across, downhill
   std::vector<int> points_per_cell{2, 2, 2};   ///< along the flow, across it, in height
 
-  /// The method declares the keys with defaults, help and what they need of `all` others; `place`: the inflow in
+  /// The method declares the keys with defaults, help and what they need of `all` others; `shown`: the inflow in
   /// messages.
-  void describe(recipe::Visitor& v, const std::string& place, const SolveOptions& all);
+  void describe(recipe::Visitor& v, const std::string& shown, const SolveOptions& all);
 };
 
 /// The name of the inflow of this number, counted from 0.

@@ -96,7 +96,9 @@ class SmallRun {
     EXPECT_EQ((*room_).taken, steps);
     numbers_ = expected(std::move(numbers_), work_, amount_, steps);
     ASSERT_EQ(on_device_.download(), numbers_);
-    if (work_ == Work::zero_and_add && steps > 0) EXPECT_EQ(spare_.download(), std::vector<int>(spare_.size(), 0));
+    if (work_ == Work::zero_and_add && steps > 0) {
+      EXPECT_EQ(spare_.download(), std::vector<int>(spare_.size(), 0));
+    }
   }
   /// From here on kernels have other arguments.
   void change(int amount) {
