@@ -129,6 +129,20 @@ void advise_on_end(const Domain& domain, const SolveOptions& o, Advice& lines) {
                                  o.end_time, speed, braking, 3 * braking));
 }
 
+/// What points keep of velocity that the grid cannot see moves nothing, and is kinetic energy all the same.
+void advise_on_transfer(const SolveOptions& o, Advice& lines) {
+  const double time = o.transfer_time.value_or(0);
+  if (!abilities_of(o.integrator).carry_inertia || !(o.stop_kinetic_fraction > 0) || time <= o.end_time) return;
+  const bool by_preset = o.preset == Preset::reference;
+  lines.emplace_back(
+      "transfer",
+      fmt::format(
+          "velocity finer than the grid decays over {:.3g} s, longer than the run ({}): points keep it at rest, "
+          "and their kinetic energy may never fall to stop_kinetic_fraction = {:g}. {}",
+          time, by_preset ? "preset = \"reference\"" : "transfer_time_s", o.stop_kinetic_fraction,
+          by_preset ? "The run then goes on to end_time_s" : "Leave one of the two out"));
+}
+
 }  // namespace
 
 Advice advice(const Domain& domain, const SolveOptions& options) {
@@ -137,6 +151,7 @@ Advice advice(const Domain& domain, const SolveOptions& options) {
   advise_on_stiffness(domain, options, lines);
   advise_on_friction(domain, options, lines);
   advise_on_end(domain, options, lines);
+  advise_on_transfer(options, lines);
   return lines;
 }
 

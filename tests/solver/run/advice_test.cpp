@@ -51,6 +51,26 @@ TEST(Advice, names_an_end_before_the_bed_could_brake_the_mass) {
   EXPECT_NE(words.find("stop_kinetic_fraction"), std::string::npos) << words;
 }
 
+TEST(Advice, names_a_rest_that_the_energy_of_points_would_not_show) {
+  SolveOptions o = sensible();
+  o.stop_kinetic_fraction = 1e-4;
+  EXPECT_EQ(said(advice(slide_above_a_plain(), o), "transfer"), "");
+  o.transfer_time = 500;
+  const std::string words = said(advice(slide_above_a_plain(), o), "transfer");
+  EXPECT_NE(words.find("decays over 500 s, longer than the run (transfer_time_s)"), std::string::npos) << words;
+  EXPECT_NE(words.find("stop_kinetic_fraction = 0.0001"), std::string::npos) << words;
+  o.end_time = 600;
+  EXPECT_EQ(said(advice(slide_above_a_plain(), o), "transfer"), "");
+  o.end_time = 120;
+  o.stop_kinetic_fraction = 0;
+  EXPECT_EQ(said(advice(slide_above_a_plain(), o), "transfer"), "");
+  o.stop_kinetic_fraction = 1e-4;
+  o.transfer_time.reset();
+  o.preset = Preset::reference;
+  EXPECT_NE(said(advice(slide_above_a_plain(), with_preset(o)), "transfer").find("preset = \"reference\""),
+            std::string::npos);
+}
+
 TEST(Advice, names_a_stiffness_far_above_need) {
   SolveOptions o = sensible();
   o.material.youngs_modulus = 5e10;
