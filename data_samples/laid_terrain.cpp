@@ -56,8 +56,11 @@ double fall(double x, double steep, double gentle, double from, double over) {
 double fractal(double x, double y, const Waves& waves, unsigned seed) {
   constexpr double hurst = 0.8;
   double sum = 0;
-  for (double length = waves.longest; length > 0.99 * waves.shortest; length /= 2)
+  double length = waves.longest;
+  while (length > 0.99 * waves.shortest) {
     sum += std::pow(length / waves.longest, hurst) * noise(x / length, y / length, seed++);
+    length /= 2;
+  }
   return sum;
 }
 

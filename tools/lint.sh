@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Formatting of every source by clang-format 14 (Debian 12's), headers that build alone, and static analysis of every
-# source, kernels included, by clang-tidy 14 with the checks of .clang-tidy: all of them in batches of a folder (see
+# C++ source, kernels included, by clang-tidy 14 with the checks of .clang-tidy: all of them in batches of a folder (see
 # cmake/batches.cmake), which reads the headers that they share once. What was clean is not looked at again until it, a
 # header that it includes or .clang-tidy has changed.
 # usage: tools/lint.sh [--format | --changed N] [FILE...]
@@ -55,7 +55,7 @@ elif [[ -n $changed ]]; then
     while IFS= read -r file; do if [[ -f $file ]]; then printf '%s\n' "$PWD/$file"; fi; done |
     head -n "$changed" || true)
 else
-  mapfile -t units < <(grep -oE '"file": "[^"]+"' "$build/compile_commands.json" | cut -d'"' -f4 |
+  mapfile -t units < <(grep -oE '"file": "[^"]+\.(cpp|cxx|cu)"' "$build/compile_commands.json" | cut -d'"' -f4 |
     awk '/unity_/ { print; next } { single[++n] = $0 } END { for (i = 1; i <= n; i++) print single[i] }')
 fi
 

@@ -41,6 +41,55 @@ void thresholds(recipe::Visitor& v, std::string_view key, std::vector<double>& v
                           "each threshold is counted once, from the smallest", "Write them in order"});
 }
 
+/// What the rules of one [[ensemble.vary]] are written with.
+class VaryRules {
+ public:
+  VaryRules(recipe::Visitor& v, const VaryOptions& options)
+      : v_(v), shown_(options.key.empty() ? "[[ensemble.vary]]" : "[[ensemble.vary]] of " + options.key) {}
+  void need(bool met, const std::string& what, const std::string& why, const std::string& mend) const {
+    v_.needs(met, {shown_ + ": " + what, why, mend});
+  }
+
+ private:
+  recipe::Visitor& v_;
+  std::string shown_;
+};
+
+/// This function declares what a distribution needs of its bounds and moments, and what has no effect.
+void need_moments(const VaryRules& rules, const VaryOptions& o) {
+  const Parameters takes = parameters_of(o.distribution);
+  rules.need(!takes.bounds_needed || (o.low && o.high), "low or high is missing", "the distribution lies between them",
+             "Give both");
+  rules.need(takes.bounds_taken || (!o.low && !o.high), "low and high have no effect", "its values are listed",
+             "Leave them out");
+  rules.need(!o.low || !o.high || *o.low < *o.high, "low is not below high", "no value lies between them",
+             "Mend one of them");
+  rules.need(!takes.moments || (o.mean && o.deviation), "mean or deviation is missing",
+             "the distribution is given by them", "Give both");
+  rules.need(takes.moments || (!o.mean && !o.deviation), "mean and deviation have no effect",
+             "this distribution is not given by them", "Leave them out, or take distribution = \"normal\"");
+  rules.need(o.distribution != Distribution::lognormal || !o.mean || *o.mean > 0, "mean is not above 0",
+             "lognormal values are positive", "Give a positive mean, or take distribution = \"normal\"");
+  rules.need(takes.mode || !o.mode, "mode has no effect", "only a triangular distribution has one", "Leave it out");
+  rules.need(!takes.mode || (o.mode && o.low && o.high && *o.mode >= *o.low && *o.mode <= *o.high),
+             "mode is not between low and high", "a triangle's top lies over its base", "Give one that is");
+}
+
+/// This function declares what a distribution needs of its values, and what has no effect.
+void need_values(const VaryRules& rules, const VaryOptions& o) {
+  const bool discrete = o.distribution == Distribution::discrete;
+  const std::size_t choices = o.values.size() + o.words.size();
+  rules.need(!discrete || choices > 0, "values are missing", "there is nothing to choose from", "Add values = [...]");
+  rules.need(discrete || choices == 0, "values have no effect", "the distribution is not discrete",
+             "Leave them out, or take distribution = \"discrete\"");
+  rules.need(o.weights.empty() || o.weights.size() == choices, "weights do not match the values",
+             fmt::format("there are {} of {}", o.weights.size(), choices), "Give one for each, or none");
+  rules.need(o.weights.empty() || *std::max_element(o.weights.begin(), o.weights.end()) > 0, "all weights are 0",
+             "nothing could be chosen", "Give a positive one");
+  rules.need((o.distribution == Distribution::table) == !o.table.empty(), "table and distribution do not go together",
+             "distribution = \"table\" is given by its file, and by nothing else", "Give both or neither");
+}
+
 }  // namespace
 
 void VaryOptions::describe(recipe::Visitor& v) {
@@ -63,36 +112,10 @@ void VaryOptions::describe(recipe::Visitor& v) {
   v.names("words", words, {}, "discrete: the words that it takes, such as the names of laws");
   v.numbers("weights", weights, recipe::not_negative, "discrete: their probabilities, up to a factor; none: alike");
   v.path("table", table, "table: a CSV file of values and their probability densities, which are joined by lines");
-  const std::string shown = key.empty() ? "[[ensemble.vary]]" : "[[ensemble.vary]] of " + key;
+  const VaryRules rules(v, *this);
   v.needs(!key.empty(), {"[[ensemble.vary]] without a key", "nothing would vary", "Add key = \"solve. ...\""});
-  const Parameters takes = parameters_of(distribution);
-  const auto need = [&](bool met, const std::string& what, const std::string& why, const std::string& mend) {
-    v.needs(met, {shown + ": " + what, why, mend});
-  };
-  need(!takes.bounds_needed || (low && high), "low or high is missing", "the distribution lies between them",
-       "Give both");
-  need(takes.bounds_taken || (!low && !high), "low and high have no effect", "its values are listed", "Leave them out");
-  need(!low || !high || *low < *high, "low is not below high", "no value lies between them", "Mend one of them");
-  need(!takes.moments || (mean && deviation), "mean or deviation is missing", "the distribution is given by them",
-       "Give both");
-  need(takes.moments || (!mean && !deviation), "mean and deviation have no effect",
-       "this distribution is not given by them", "Leave them out, or take distribution = \"normal\"");
-  need(distribution != Distribution::lognormal || !mean || *mean > 0, "mean is not above 0",
-       "lognormal values are positive", "Give a positive mean, or take distribution = \"normal\"");
-  need(takes.mode || !mode, "mode has no effect", "only a triangular distribution has one", "Leave it out");
-  need(!takes.mode || (mode && low && high && *mode >= *low && *mode <= *high), "mode is not between low and high",
-       "a triangle's top lies over its base", "Give one that is");
-  const bool discrete = distribution == Distribution::discrete;
-  const std::size_t choices = values.size() + words.size();
-  need(!discrete || choices > 0, "values are missing", "there is nothing to choose from", "Add values = [...]");
-  need(discrete || choices == 0, "values have no effect", "the distribution is not discrete",
-       "Leave them out, or take distribution = \"discrete\"");
-  need(weights.empty() || weights.size() == choices, "weights do not match the values",
-       fmt::format("there are {} of {}", weights.size(), choices), "Give one for each, or none");
-  need(weights.empty() || *std::max_element(weights.begin(), weights.end()) > 0, "all weights are 0",
-       "nothing could be chosen", "Give a positive one");
-  need((distribution == Distribution::table) == !table.empty(), "table and distribution do not go together",
-       "distribution = \"table\" is given by its file, and by nothing else", "Give both or neither");
+  need_moments(rules, *this);
+  need_values(rules, *this);
 }
 
 void CorrelationOptions::describe(recipe::Visitor& v) {

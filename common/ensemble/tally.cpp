@@ -29,9 +29,12 @@ bool is_there(const CountedMap& map, double value) { return map.early ? value >=
 
 BinEdges bin_edges(const CountedMap& map) {
   BinEdges edges{};
+  edges[0] = map.low;
   double edge = static_cast<double>(map.low);
-  for (std::size_t n = 0; n < edges.size(); ++n, edge *= map.ratio)
-    edges[n] = n == 0 ? map.low : std::max(edges[n - 1] + 1, static_cast<std::int64_t>(edge));
+  for (std::size_t n = 1; n < edges.size(); ++n) {
+    edge *= map.ratio;
+    edges[n] = std::max(edges[n - 1] + 1, static_cast<std::int64_t>(edge));
+  }
   return edges;
 }
 

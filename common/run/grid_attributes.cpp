@@ -47,7 +47,7 @@ void write_facts(File& file, const std::string& group, const std::vector<std::pa
 std::vector<std::pair<std::string, std::string>> read_facts(const File& file, const std::string& group) {
   std::vector<std::pair<std::string, std::string>> facts;
   for (const auto& name : file.children(group)) {
-    const auto one = group + "/" + name;
+    const auto one = fmt::format("{}/{}", group, name);
     facts.emplace_back(file.text(one, "key"), file.text(one, "value"));
   }
   return facts;

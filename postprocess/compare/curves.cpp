@@ -93,18 +93,26 @@ bool holds(const ComparedRun& run, const std::string& name) {
          column->values.size() == time->values.size();
 }
 
+/// The numbers from `first` to `last` in steps.
+std::vector<double> ticks(double first, double last, double step) {
+  std::vector<double> all;
+  const double steps = std::floor((last - first) / step + 1e-9);
+  for (int n = 0; n <= steps; ++n) all.push_back(first + n * step);
+  return all;
+}
+
 std::string axes(const Span& time, const Span& value, double factor) {
   std::string text;
   const double across = width - left - right, up = height - top - bottom;
   const double step = factor * axis_step((value.high - value.low) / factor);
-  for (double v = std::ceil(value.low / step) * step; v <= value.high + 1e-9 * step; v += step) {
+  for (const double v : ticks(std::ceil(value.low / step) * step, value.high, step)) {
     const double y = height - bottom - up * (v - value.low) / (value.high - value.low);
     text += fmt::format(
         "<path d=\"M{:.1f} {:.1f}h{:.1f}\" class=\"g\"/><text x=\"{:.1f}\" y=\"{:.1f}\" class=\"e\">{:g}</text>", left,
         y, across, left - 5, y + 4, std::abs(v) < 1e-9 * step ? 0 : v / factor);
   }
   const double every = axis_step(time.high - time.low);
-  for (double t = time.low; t <= time.high + 1e-9 * every; t += every)
+  for (const double t : ticks(time.low, time.high, every))
     text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"m\">{:g}</text>",
                         left + across * (t - time.low) / (time.high - time.low), height - bottom + 14, t);
   return text +

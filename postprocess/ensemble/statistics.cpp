@@ -45,7 +45,7 @@ std::vector<double> rank_correlations(const std::vector<std::vector<double>>& in
 std::vector<double> rank_regression(const std::vector<std::vector<double>>& inputs,
                                     const std::vector<double>& outputs) {
   try {
-    const auto found = list_of(OT::CorrelationAnalysis(sample_of(inputs), sample_of({outputs})).computeSRRC());
+    auto found = list_of(OT::CorrelationAnalysis(sample_of(inputs), sample_of({outputs})).computeSRRC());
     for (const double value : found)
       if (!std::isfinite(value)) return {};
     return found;

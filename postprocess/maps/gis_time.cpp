@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+#include <ctime>
+#include <iomanip>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -29,11 +31,11 @@ RasterStyle flow_style(const Run& run, const std::vector<double>& given) {
 
 std::string instant_after(const std::string& start, double seconds) {
   using namespace std::chrono;
-  int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0;
-  std::sscanf(start.c_str(), "%d-%d-%d %d:%d:%d", &year, &month, &day, &hour, &minute, &second);
-  const sys_days date{std::chrono::year{year} / month / day};
-  const auto at = sys_time<milliseconds>(date) + hours{hour} + minutes{minute} + std::chrono::seconds{second} +
-                  milliseconds{std::llround(1000 * seconds)};
+  std::tm begin{};
+  std::istringstream(start) >> std::get_time(&begin, "%Y-%m-%d %H:%M:%S");
+  const sys_days date{year{begin.tm_year + 1900} / (begin.tm_mon + 1) / begin.tm_mday};
+  const auto at = sys_time<milliseconds>(date) + hours{begin.tm_hour} + minutes{begin.tm_min} +
+                  std::chrono::seconds{begin.tm_sec} + milliseconds{std::llround(1000 * seconds)};
   const auto midnight = floor<days>(at);
   const year_month_day civil{midnight};
   const hh_mm_ss clock{at - midnight};

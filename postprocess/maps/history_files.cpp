@@ -27,7 +27,7 @@ std::vector<PlaceColumns> places_of(const RunHistory& history, const std::string
     if (!column.place.starts_with(kind + " ")) continue;
     const std::string name = column.place.substr(kind.size() + 1);
     auto found = std::find_if(places.begin(), places.end(), [&](const auto& place) { return place.name == name; });
-    if (found == places.end()) found = places.insert(places.end(), {name, kind + "_" + name + "_", {}});
+    if (found == places.end()) found = places.insert(places.end(), {name, fmt::format("{}_{}_", kind, name), {}});
     found->columns.push_back(&column);
   }
   return places;

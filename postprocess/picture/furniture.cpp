@@ -112,7 +112,7 @@ class Column {
 };
 
 void draw_hazard_legend(Column& column, const Hazard& hazard) {
-  if (hazard.buildings.size() > 0) column.line(building_style(), "Buildings");
+  if (!hazard.buildings.empty()) column.line(building_style(), "Buildings");
   if (!hazard.cones.empty())
     column.line(reach_style(), fmt::format("Angle of reach, H/L = {:.2f}", hazard.cones.front().tangent));
 }

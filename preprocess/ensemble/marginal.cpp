@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <openturns/BetaMuSigma.hxx>
 #include <openturns/LogNormal.hxx>
@@ -148,7 +149,7 @@ Marginal::Marginal(const VaryOptions& options) {
 
 double Marginal::quantile(double p) const {
   const double value = law_->distribution.computeQuantile(p)[0];
-  return values_.empty() ? value : values_.at(static_cast<std::size_t>(value + 0.5));
+  return values_.empty() ? value : values_.at(static_cast<std::size_t>(std::lround(value)));
 }
 
 double Marginal::mean() const {

@@ -25,8 +25,9 @@ std::vector<std::size_t> around(const MapGrid& grid, std::size_t cell) {
 
 double cells_between(const MapGrid& grid, std::size_t a, std::size_t b) {
   const auto columns = static_cast<std::size_t>(grid.columns);
+  const std::size_t row_a = a / columns, row_b = b / columns;
   return std::hypot(static_cast<double>(a % columns) - static_cast<double>(b % columns),
-                    static_cast<double>(a / columns) - static_cast<double>(b / columns));
+                    static_cast<double>(row_a) - static_cast<double>(row_b));
 }
 
 bool WayDown::at_edge(std::size_t cell) const {

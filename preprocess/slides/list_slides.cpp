@@ -82,7 +82,7 @@ Slide from_feature(const PolygonFeature& feature, const SlideOptions& options, s
 
 /// "key = value" of a recipe, without the blanks and quotes around.
 std::pair<std::string, std::string> parted(const std::string& text) {
-  const auto bare = [](std::string word) {
+  const auto bare = [](const std::string& word) {
     const auto first = word.find_first_not_of(" \t\"'"), last = word.find_last_not_of(" \t\"'");
     return first == std::string::npos ? std::string() : word.substr(first, last - first + 1);
   };

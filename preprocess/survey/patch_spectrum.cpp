@@ -54,8 +54,8 @@ PatchWindow::PatchWindow(const MapGrid& grid, std::vector<char> used)
 std::vector<double> PatchWindow::without_plane(const std::vector<double>& field) const {
   const auto row_of = [&](std::size_t i) {
     const auto columns = static_cast<std::size_t>(columns_);
-    return Eigen::Vector3d(1, static_cast<double>(i % columns) / columns_ - 0.5,
-                           static_cast<double>(i / columns) / rows_ - 0.5);
+    const std::size_t row = i / columns, column = i % columns;
+    return Eigen::Vector3d(1, static_cast<double>(column) / columns_ - 0.5, static_cast<double>(row) / rows_ - 0.5);
   };
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();

@@ -200,6 +200,17 @@ void say_edges(const EnsembleCounts& counts, const MemberTable& table) {
                                : "Take a larger part of the elevation model"));
 }
 
+/// This function runs the members of a part that wait, on these devices, and saves their counts now and then; see
+/// run_members().
+bool count_members(const Ensemble& e, const Members& members, const std::vector<AnyDevice>& devices,
+                   EnsembleCounts& counts) {
+  return run_members(members, counts,
+                     {.devices = devices,
+                      .save = [&] { write_counts(e.paths.unfinished(e.part), counts); },
+                      .save_interval = e.options.save_interval,
+                      .edge_fails = e.edge_fails});
+}
+
 }  // namespace
 
 MemberRange member_range(const std::string& words) {
@@ -262,11 +273,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
   const auto unfinished = e.paths.unfinished(e.part);
   const OwnEnd saving("finished members are saved");
   keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);
-  const bool is_whole = run_members(members, counts,
-                                    {.devices = devices_for(flight.count, flags.on),
-                                     .save = [&] { write_counts(unfinished, counts); },
-                                     .save_interval = e.options.save_interval,
-                                     .edge_fails = e.edge_fails});
+  const bool is_whole = count_members(e, members, devices_for(flight.count, flags.on), counts);
   say_warnings(counts, e.table, domain);
   if (!is_whole) stop(counts, unfinished);
   judge_failures(counts, e.options.failed_share, e.table);

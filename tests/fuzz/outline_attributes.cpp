@@ -15,7 +15,7 @@ namespace {
 std::string next_word(talus::fuzz::Bytes& bytes) {
   if (bytes.empty()) return {};
   const std::size_t length = std::min<std::size_t>(bytes[0] % 64, bytes.size() - 1);
-  const std::string word(reinterpret_cast<const char*>(bytes.data()) + 1, length);
+  std::string word(reinterpret_cast<const char*>(bytes.data()) + 1, length);
   bytes = bytes.subspan(1 + length);
   return word;
 }

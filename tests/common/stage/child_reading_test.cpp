@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
+#include <string>
 
 #include "common/error.hpp"
 #include "tests/common/scratch.hpp"
@@ -16,7 +16,7 @@ namespace talus {
 namespace {
 
 const KnownChildReading child_echo("test echo", [](const std::vector<std::string>& words) {
-  return words.at(1) + std::string(200000, '.') + (::getppid() == std::atoi(words.at(2).c_str()) ? "child" : "same");
+  return words.at(1) + std::string(200000, '.') + (std::to_string(::getppid()) == words.at(2) ? "child" : "same");
 });
 const KnownChildReading child_fault("test fault", [](const std::vector<std::string>& words) -> std::string {
   throw DataError({words.at(0) + ": what", "why", "mend"});

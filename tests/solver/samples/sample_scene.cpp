@@ -16,7 +16,8 @@ void seed_column(Domain& d, int column, int row) {
   for (int n = 0; n < 4 * high; ++n) {
     d.points.x.push_back(d.grid.x(column) + h / 4 * (n % 2 == 0 ? -1 : 1));
     d.points.y.push_back(d.grid.y(row) + h / 4 * (n / 2 % 2 == 0 ? -1 : 1));
-    d.points.height.push_back((n / 4 + 0.5) * thickness / high);
+    const int layer = n / 4;
+    d.points.height.push_back((layer + 0.5) * thickness / high);
     d.points.volume.push_back(thickness * h * h / (4 * high));
     d.points.extent_x.push_back(h / 2);
     d.points.extent_y.push_back(h / 2);

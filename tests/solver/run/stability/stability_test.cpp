@@ -80,7 +80,8 @@ struct HomogeneousSlope {
   SolveOptions options;
   HomogeneousSlope() {
     const double west = 3.5 * cell, south = 2.5 * cell, half = cell / 2;
-    for (double x = half / 2; x < crest + 2 * height; x += half) {
+    for (int n = 0; (n + 0.5) * half < crest + 2 * height; ++n) {
+      const double x = (n + 0.5) * half;
       const double top = std::min(height, height - (x - crest) / 2);
       const double left = west + x - half / 2;
       fill_column(left, south, std::round(top / half) * half);
@@ -99,7 +100,8 @@ struct HomogeneousSlope {
   }
   void fill_column(double left, double south, double top) {
     const double half = cell / 2;
-    for (double h = half / 2; h < top; h += half) {
+    for (int n = 0; (n + 0.5) * half < top; ++n) {
+      const double h = (n + 0.5) * half;
       domain.points.x.push_back(left + half / 2);
       domain.points.y.push_back(south + half);
       domain.points.height.push_back(h);
