@@ -4,16 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <deque>
-#include <exception>
+#include <memory>
 #include <mutex>
-#include <thread>
 
 #include "common/error.hpp"
 #include "common/map/crop.hpp"
-#include "common/stage/machine.hpp"
+#include "common/stage/in_threads.hpp"
 #include "preprocess/slides/slides.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/working_grid.hpp"
@@ -24,6 +22,7 @@ namespace {
 constexpr int rim = 3;             // cells around what a slide can reach: the flow spreads over that many
 constexpr int least_reach = 64;    // cells: how far a line of reach is followed at first
 constexpr int ground_side = 1000;  // cells of the coarse ground along a side
+constexpr std::size_t most_readers = 16;
 constexpr double degrees = M_PI / 180;
 
 /// The model of the recipe; each thread opens it for itself.
@@ -127,30 +126,43 @@ CellBox ReachOnGround::spread(const CellBox& part) const {
   return found;
 }
 
-/// Work on all slides, each thread with the model opened for itself.
-void for_all(std::size_t count, const Options& shared, const std::function<void(const Elevation&, std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::exception_ptr fault;
-  const auto run = [&] {
-    try {
-      const Elevation model = open_model(shared);
-      for (std::size_t k = next++; k < count; k = next++) {
-        stop_if_interrupted("cutting the parts of the model");
-        work(model, k);
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!fault) fault = std::current_exception();
-      next = count;
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    const auto wanted = std::min(count, static_cast<std::size_t>(std::clamp(thread_limit(), 1, 16)));
-    for (std::size_t t = 0; t < wanted; ++t) threads.emplace_back(run);
+/// The model of the recipe, opened as often as threads read from it at the same time.
+class OpenModels {
+ public:
+  explicit OpenModels(const Options& shared) : shared_(shared) {}
+
+  /// The method calls work(model) with a model that no other thread reads from meanwhile.
+  template <class Work>
+  void use(const Work& work) {
+    std::unique_ptr<const Elevation> model = take();
+    work(*model);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(model));
   }
-  if (fault) std::rethrow_exception(fault);
+
+ private:
+  std::unique_ptr<const Elevation> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<const Elevation> model = std::move(idle_.back());
+        idle_.pop_back();
+        return model;
+      }
+    }
+    return std::make_unique<const Elevation>(open_model(shared_));
+  }
+
+  const Options& shared_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<const Elevation>> idle_;
+};
+
+/// Work on all slides, each with a model that no other reads from.
+void for_all(std::size_t count, OpenModels& models, const std::function<void(const Elevation&, std::size_t)>& work) {
+  in_threads(
+      count, "cutting the parts of the model",
+      [&](std::size_t k) { models.use([&](const Elevation& model) { work(model, k); }); }, most_readers);
 }
 
 void require_inside(const std::vector<Slide>& slides, const std::vector<CellBox>& boxes, const MapGrid& grid,
@@ -210,18 +222,19 @@ SlideWindows windows_of(const std::vector<Slide>& slides, const SlideOptions& op
   std::vector<CellBox> boxes;
   for (const Slide& slide : slides) boxes.push_back(box_of(slide.outline, grid));
   require_inside(slides, boxes, grid, shared.first_dem());
+  OpenModels models(shared);
   if (options.margin) {
     const int margin = std::max(1, static_cast<int>(std::min(1e9, std::ceil(*options.margin / grid.cell))));
     for (CellBox& box : boxes) box = box.grown(margin, grid);
   } else {
     const double tangent = std::tan(options.reach_angle * degrees);
-    for_all(slides.size(), shared, [&](const Elevation& own, std::size_t k) {
+    for_all(slides.size(), models, [&](const Elevation& own, std::size_t k) {
       boxes[k] = ReachOnGround(own, grid, boxes[k], tangent).find().grown(rim, grid);
     });
   }
   SlideWindows windows = on_one_lattice(boxes, grid);
   std::mutex mutex;
-  for_all(slides.size(), shared, [&](const Elevation& own, std::size_t k) {
+  for_all(slides.size(), models, [&](const Elevation& own, std::size_t k) {
     sample_ground(own, windows.lattice, windows.windows[k], windows.ground, mutex);
   });
   return windows;
