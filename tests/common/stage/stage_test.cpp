@@ -11,81 +11,9 @@
 namespace talus {
 namespace {
 
-using test::fault_of;
 using test::SampleOptions;
 using test::Scratch;
 using test::text_of;
-
-TEST(Sha256, matches_published_vectors) {
-  const Scratch scratch;
-  EXPECT_EQ(sha256(scratch.write("empty", "")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(sha256(scratch.write("abc", "abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(sha256_of_text("abc"), sha256(scratch / "abc"));
-  EXPECT_EQ(sha256(scratch.write("two", "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
-            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  EXPECT_EQ(sha256(scratch.write("million", std::string(1000000, 'a'))),
-            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-}
-
-TEST(Sha256, says_what_it_cannot_read) {
-  EXPECT_EQ(fault_of<DataError>([] { sha256("/no/such"); }),
-            "/no/such: cannot be read (No such file or directory). Check the path and its permissions");
-}
-
-TEST(PendingFile, shows_nothing_until_committed) {
-  const Scratch scratch;
-  {
-    PendingFile pending(scratch / "map.tif");
-    std::ofstream(pending.path()) << "half";
-    EXPECT_TRUE(pending.path().filename().string().starts_with(".map.tif.")) << pending.path();
-    EXPECT_TRUE(pending.path().filename().string().ends_with(".partial")) << pending.path();
-    EXPECT_FALSE(std::filesystem::exists(scratch / "map.tif"));
-  }
-  EXPECT_EQ(scratch.files(), 0u);
-}
-
-TEST(PendingFile, keeps_the_old_file_when_the_new_one_is_given_up) {
-  const Scratch scratch;
-  scratch.write("map.tif", "old");
-  {
-    const PendingFile given_up(scratch / "map.tif");
-    std::ofstream(given_up.path()) << "half";
-    std::ofstream(given_up.path().string() + ".aux.xml") << "what GDAL leaves beside it";
-  }
-  EXPECT_EQ(text_of(scratch / "map.tif"), "old");
-  EXPECT_EQ(scratch.files(), 1u);
-  PendingFile pending(scratch / "map.tif");
-  std::ofstream(pending.path()) << "new";
-  pending.commit();
-  EXPECT_EQ(text_of(scratch / "map.tif"), "new");
-}
-
-TEST(PendingFile, a_commit_without_a_file_is_a_fault) {
-  const Scratch scratch;
-  PendingFile pending(scratch / "map.tif");
-  EXPECT_EQ(fault_of<DataError>([&] { pending.commit(); }),
-            (scratch / "map.tif").string() +
-                ": cannot be written (No such file or directory). Check the folder's permissions "
-                "and free space, or write elsewhere with --out DIR");
-}
-
-TEST(WriteText, leaves_nothing_when_the_disk_fills_up) {
-  const Scratch scratch;
-  scratch.write("score.json", "old");
-  std::string fault;
-  {
-    const test::SmallFiles limit(100000);
-    fault = fault_of<DataError>([&] { write_text(scratch / "score.json", std::string(300000, 'x')); });
-  }
-  EXPECT_TRUE(fault.starts_with((scratch / "score.json").string() + ": cannot be written (File too large)")) << fault;
-  EXPECT_EQ(text_of(scratch / "score.json"), "old");
-  EXPECT_EQ(scratch.files(), 1u);
-}
-
-TEST(WriteText, names_the_reason_of_the_system) {
-  const std::string fault = fault_of<DataError>([] { write_text("/no/such/folder/a.txt", "x"); });
-  EXPECT_TRUE(fault.starts_with("/no/such/folder/a.txt: cannot be written (No such file or directory)")) << fault;
-}
 
 /// A stage that notes what it was given.
 struct RunStage : testing::Test {
