@@ -58,6 +58,7 @@ SettledOnce settle_once(const Domain& domain, const SolveOptions& base) {
   if (base.integrator != Integrator::automatic) return settled;
   settled.steps = choose_steps(domain, stiff);
   for (const std::string& reason : settled.steps->reasons) log_info("steps: " + reason);
+  if (const std::string unkept = unkept_accuracy(domain, base); !unkept.empty()) log_warning(unkept);
   return settled;
 }
 

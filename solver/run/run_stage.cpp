@@ -59,10 +59,12 @@ void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& devi
 
 /// This function says what the scene is warned of. What is said here of the run goes into its results: the facts
 /// "warning.solve.N" and "advice.NAME".
-void log_warnings(Domain& domain, const SolveOptions& o) {
+void log_warnings(Domain& domain, const SolveOptions& asked, const SolveOptions& o) {
   say_warnings_of_domain(domain);
   Facts said;
-  for (const std::string& text : warnings(domain, o)) {
+  std::vector<std::string> texts = warnings(domain, o);
+  if (std::string unkept = unkept_accuracy(domain, asked); !unkept.empty()) texts.push_back(std::move(unkept));
+  for (const std::string& text : texts) {
     log_warning(text);
     said.emplace_back(fmt::format("warning.solve.{}", said.size()), text);
   }
@@ -136,12 +138,12 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptio
   judge(domain, settled, flags.is_varied);
   if (flags.plan) {
     for (const std::string& text : plan(domain, settled, device)) log_info(text);
-    log_warnings(domain, settled);
+    log_warnings(domain, options, settled);
     return {};
   }
   add_places(domain, settled);
   log_plan(domain, settled, device);
-  log_warnings(domain, settled);
+  log_warnings(domain, options, settled);
   const RunPaths paths(context.out);
   const std::string fingerprint = fingerprint_of(inputs_of(settled, context.out).front(), settled);
   if (flags.profile) device.profile().turn_on();

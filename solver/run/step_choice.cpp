@@ -22,6 +22,7 @@ namespace {
 constexpr double explicit_per_accuracy = 80, rough_per_accuracy = 50, columns_per_accuracy = 100;
 constexpr double most_explicit = 0.8, most_columns = 1, least_cfl = 0.1;
 constexpr double roughest = 0.01;  // bend of the ground over the thickness up to which long steps keep to it
+constexpr double kept_on_rough_ground = 0.05;  // accuracy down to which steps keep to it beyond that
 
 /// A way of stepping a flow: the share of the CFL step that it may take, and 1 over the CFL step [1/s].
 struct Way {
@@ -98,6 +99,18 @@ StepChoice choose_steps(const Domain& domain, const SolveOptions& o) {
   choice.reasons.push_back(moving ? fmt::format("no implicit steps at rest: {}, {}", moving.key, moving.reason)
                                   : "newmark's steps where all is at rest and they take less work");
   return choice;
+}
+
+std::string unkept_accuracy(const Domain& domain, const SolveOptions& o) {
+  if (!o.accuracy || *o.accuracy >= kept_on_rough_ground) return {};
+  const double bend = bend_over_thickness(domain, energy_line_of(domain, o));
+  if (bend <= roughest) return {};
+  return fmt::format(
+      "[solve] accuracy = {:g} is not kept on this ground: within a cell it bends by {:.2g} of the thickness of what "
+      "is "
+      "released, and beyond {:g} of it explicit steps of a tenth of the CFL step, instead of a quarter, moved 5 to 8 % "
+      "of the deposits measured. Footprints and speeds hold better; accuracy = {:g} asks for no more than can be had",
+      *o.accuracy, bend, roughest, kept_on_rough_ground);
 }
 
 SolveOptions with_steps(SolveOptions o, const StepChoice& choice) {

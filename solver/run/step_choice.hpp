@@ -23,6 +23,10 @@ struct StepChoice {
 /// recipe's own `cfl`.
 StepChoice choose_steps(const Domain& domain, const SolveOptions& options);
 
+/// What is wrong with the `accuracy` that a recipe asks for: no steps keep it on ground that is rough for the flow
+/// (docs/decisions/0009-choice-of-integrator.md). Empty: nothing is known to be.
+std::string unkept_accuracy(const Domain& domain, const SolveOptions& options);
+
 /// The options with the choice carried out.
 SolveOptions with_steps(SolveOptions options, const StepChoice& choice);
 

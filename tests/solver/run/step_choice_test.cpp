@@ -68,24 +68,36 @@ TEST(StepChoice, says_why_columns_are_out_of_the_question) {
   EXPECT_NE(below.reasons[0].find("a [[solve.wall]] across z above the material"), std::string::npos);
 }
 
+/// Waves 1.5 m high and four cells long under a slab of this thickness [m]: between neighbouring cells slopes change by
+/// a tenth, and an arc over a cell rises by a tenth of a metre over its chord.
+Domain slab_on_waves(double thickness) {
+  Domain d = slab_on_layers(1);
+  for (double& t : d.release_thickness.values) t *= thickness / 10;
+  for (int row = 0; row < d.grid.rows; ++row) {
+    for (int column = 0; column < d.grid.columns; ++column)
+      d.terrain.at(column, row) += 0.75 * std::cos(column * M_PI / 2 + 0.7);
+  }
+  return d;
+}
+
 TEST(StepChoice, takes_short_explicit_steps_on_ground_rough_for_the_flow) {
-  // Waves 1.5 m high and four cells long: between neighbouring cells slopes change by a tenth, and an arc over a cell
-  // rises by a tenth of a metre over its chord.
-  const auto wavy = [](double thickness) {
-    Domain d = slab_on_layers(1);
-    for (double& t : d.release_thickness.values) t *= thickness / 10;
-    for (int row = 0; row < d.grid.rows; ++row) {
-      for (int column = 0; column < d.grid.columns; ++column)
-        d.terrain.at(column, row) += 0.75 * std::cos(column * M_PI / 2 + 0.7);
-    }
-    return choose_steps(d, chosen_at(0.01));
-  };
-  const StepChoice thin = wavy(4), thick = wavy(20);
+  const StepChoice thin = choose_steps(slab_on_waves(4), chosen_at(0.01)),
+                   thick = choose_steps(slab_on_waves(20), chosen_at(0.01));
   EXPECT_EQ(thin.flow, Integrator::explicit_);
   EXPECT_EQ(thin.cfl, 0.5);
   EXPECT_NE(thin.reasons[0].find("within a cell the ground bends by 0.0"), std::string::npos) << thin.reasons[0];
   EXPECT_EQ(thick.flow, Integrator::column_implicit);
   EXPECT_EQ(thick.cfl, 1);
+}
+
+TEST(StepChoice, says_where_an_accuracy_cannot_be_kept) {
+  const std::string words = unkept_accuracy(slab_on_waves(4), chosen_at(0.01));
+  EXPECT_NE(words.find("[solve] accuracy = 0.01 is not kept on this ground: within a cell it bends by 0.0"),
+            std::string::npos)
+      << words;
+  EXPECT_EQ(unkept_accuracy(slab_on_waves(20), chosen_at(0.01)), "");
+  EXPECT_EQ(unkept_accuracy(slab_on_waves(4), chosen_at(0.05)), "");
+  EXPECT_EQ(unkept_accuracy(slab_on_waves(4), chosen_at({})), "");
 }
 
 TEST(StepChoice, takes_no_implicit_steps_where_something_keeps_from_them) {
