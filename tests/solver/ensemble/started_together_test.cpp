@@ -28,6 +28,7 @@ const std::vector<Asked> everything_asked{
     {"single_precision", "", {{"solve.precision", "single"}}},
     {"columns", "integrator = \"column-implicit\"\n", {}},
     {"columns_in_single_precision", "integrator = \"column-implicit\"\n", {{"solve.precision", "single"}}},
+    {"steps_that_are_chosen", "integrator = \"auto\"\naccuracy = 0.02\n", {}},
     {"increments", "stress_update = \"musl\"\n", {{"solve.transfer", "flip"}}},
     {"no_finer_velocity", "transfer_time_s = 0.0\n", {}},
     {"damping", "damping = 0.1\n", {}},
