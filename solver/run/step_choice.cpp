@@ -107,9 +107,9 @@ std::string unkept_accuracy(const Domain& domain, const SolveOptions& o) {
   if (bend <= roughest) return {};
   return fmt::format(
       "[solve] accuracy = {:g} is not kept on this ground: within a cell it bends by {:.2g} of the thickness of what "
-      "is "
-      "released, and beyond {:g} of it explicit steps of a tenth of the CFL step, instead of a quarter, moved 5 to 8 % "
-      "of the deposits measured. Footprints and speeds hold better; accuracy = {:g} asks for no more than can be had",
+      "is released, and beyond {:g} of it explicit steps of a tenth of the CFL step, instead of a quarter, moved 5 to "
+      "8 % of the deposits measured. Footprints and speeds hold better; accuracy = {:g} asks for no more than can be "
+      "had",
       *o.accuracy, bend, roughest, kept_on_rough_ground);
 }
 
