@@ -62,20 +62,20 @@ class Units:
     """UDUNITS, the package that CF defines units by."""
 
     def __init__(self):
-        self.library = ctypes.CDLL("libudunits2.so.0")
+        self.udunits = ctypes.CDLL("libudunits2.so.0")
         for name in ("ut_read_xml", "ut_parse"):
-            getattr(self.library, name).restype = ctypes.c_void_p
-        self.library.ut_parse.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
-        self.library.ut_are_convertible.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
-        self.library.ut_set_error_message_handler(ctypes.cast(self.library.ut_ignore, ctypes.c_void_p))
-        self.system = self.library.ut_read_xml(None)
+            getattr(self.udunits, name).restype = ctypes.c_void_p
+        self.udunits.ut_parse.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
+        self.udunits.ut_are_convertible.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+        self.udunits.ut_set_error_message_handler(ctypes.cast(self.udunits.ut_ignore, ctypes.c_void_p))
+        self.system = self.udunits.ut_read_xml(None)
 
     def parse(self, unit):
-        return self.library.ut_parse(self.system, unit.encode(), 0)
+        return self.udunits.ut_parse(self.system, unit.encode(), 0)
 
     def convertible(self, unit, other):
         pair = self.parse(unit), self.parse(other)
-        return None not in pair and self.library.ut_are_convertible(*pair) != 0
+        return None not in pair and self.udunits.ut_are_convertible(*pair) != 0
 
 
 units = Units()
