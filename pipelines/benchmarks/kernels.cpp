@@ -108,7 +108,7 @@ SolveOptions options_for(const KernelSetting& k) {
 
 /// Steps taken, at least so many.
 struct Taken {
-  int steps = 0, linear = 0;
+  int steps = 0, newton = 0, linear = 0;
 };
 Taken take(Solver& solver, int steps) {
   Taken taken;
@@ -119,6 +119,7 @@ Taken take(Solver& solver, int steps) {
       throw NumericalError(
           {fmt::format("point {} of the block lost its state in step {}", batch.clock.failed_point, batch.clock.step),
            "the steps timed are not those of a body that holds together", ""});
+    taken.newton += batch.stats.newton;
     taken.linear += batch.stats.linear;
     taken.steps = static_cast<int>(batch.clock.step - first);
   }
@@ -171,6 +172,7 @@ void profile_steps(const KernelSetting& k, Solver& solver, Profile& profile, Ker
   };
   if (k.newmark) {  // whose phases hold many kernels each: marks around every one would be in the way
     const Taken taken = profiled(false);
+    run.newton_iterations = static_cast<double>(taken.newton) / taken.steps;
     run.cg_iterations = static_cast<double>(taken.linear) / taken.steps;
     keep_phases(taken.steps);
   }
@@ -186,6 +188,20 @@ std::string shape_of(const KernelSetting& k) { return k.shape == ShapeKind::line
 std::string precision_of(const KernelSetting& k) { return k.precision == Precision::double_ ? "double" : "single"; }
 
 }  // namespace
+
+double KernelRun::seconds_of(const std::string& phase) const {
+  const auto found = std::ranges::find(phases, phase, [](const auto& p) { return p.first; });
+  return found == phases.end() ? 0 : found->second;
+}
+
+double KernelRun::newton_seconds() const {
+  if (!(newton_iterations > 0)) return 0;
+  double sum = 0;
+  for (const char* phase :
+       {"stress and tangent", "residual and contact", "operator and preconditioner", "conjugate gradients"})
+    sum += seconds_of(phase);
+  return sum / newton_iterations;
+}
 
 std::string name_of(const KernelSetting& k) {
   return fmt::format("{} {} {}", method_of(k), shape_of(k), precision_of(k));

@@ -16,11 +16,12 @@ struct KernelRun {
   std::string method;  // "explicit", "newmark"
   std::string shape, precision, place;
   double points = 0;
-  int steps = 0;             // timed, in each of three rounds
-  double step_seconds = 0;   // median of the rounds
-  double bytes = 0;          // of points, grid and solver
-  double cg_iterations = 0;  // newmark: a step, in those whose phases are told
-  double check = 0;          // how far the momentum is off the closed form, over that at 0.36 m/s
+  int steps = 0;            // timed, in each of three rounds
+  double step_seconds = 0;  // median of the rounds
+  double bytes = 0;         // of points, grid and solver
+  // newmark: a step, in those whose phases are told
+  double newton_iterations = 0, cg_iterations = 0;
+  double check = 0;  // how far the momentum is off the closed form, over that at 0.36 m/s
   bool pass = false;
   std::vector<std::pair<std::string, double>> phases;  // seconds a step, in a round of its own
   struct Kernel {
@@ -31,6 +32,10 @@ struct KernelRun {
   std::vector<std::pair<std::string, double>> memory;  // bytes by owner
 
   double eta() const { return step_seconds / points; }
+  /// Of the phase of this name, a step; 0 without one.
+  double seconds_of(const std::string& phase) const;
+  /// Of a Newton iteration: stress and tangent, contacts, preconditioner and conjugate gradients; 0 without any.
+  double newton_seconds() const;
 };
 
 struct KernelSetting {

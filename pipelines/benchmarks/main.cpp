@@ -63,9 +63,9 @@ std::string commit() {
 
 std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
   std::string text =
-      "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,cg_iterations_per_"
-      "step,seconds_per_point_and_cg_iteration,momentum_error,phases_us,kernels_us_and_share_of_copy,memory_bytes_per_"
-      "point,commit,date\n";
+      "method,shape,precision,place,points,steps,step_us,seconds_per_point_and_step,bytes_per_point,newton_iterations_"
+      "per_step,newton_iteration_us,cg_iterations_per_step,seconds_per_point_and_cg_iteration,momentum_error,phases_us,"
+      "kernels_us_and_share_of_copy,memory_bytes_per_point,commit,date\n";
   const std::string made = fmt::format("{},{:%Y-%m-%d}", commit(), fmt::gmtime(std::time(nullptr)));
   const auto join = [](const auto& list, auto&& word) {
     std::string all;
@@ -74,16 +74,15 @@ std::string csv_of(const std::vector<KernelRun>& runs, double copy) {
   };
   for (const KernelRun& r : runs) {
     const double iterations = r.cg_iterations;
-    double cg = 0;
-    for (const auto& [name, seconds] : r.phases) cg += name == "conjugate gradients" ? seconds : 0;
     std::vector<KernelRun::Kernel> longest(
         r.kernels.begin(),
         r.kernels.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(r.kernels.size(), 12)));
     text += fmt::format(
-        "{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{},{:.2g},\"{}\",\"{}\",\"{}\",{}\n", r.method, r.shape,
-        r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(), r.bytes / r.points, iterations,
-        iterations > 0 ? fmt::format("{:.3g}", cg / iterations / r.points) : "", r.check,
-        join(r.phases, [](const auto& p) { return fmt::format("{}: {:.2f}", p.first, 1e6 * p.second); }),
+        "{},{},{},{},{:.0f},{},{:.3f},{:.4g},{:.1f},{:.1f},{},{:.1f},{},{:.2g},\"{}\",\"{}\",\"{}\",{}\n", r.method,
+        r.shape, r.precision, r.place, r.points, r.steps, 1e6 * r.step_seconds, r.eta(), r.bytes / r.points,
+        r.newton_iterations, iterations > 0 ? fmt::format("{:.1f}", 1e6 * r.newton_seconds()) : "", iterations,
+        iterations > 0 ? fmt::format("{:.3g}", r.seconds_of("conjugate gradients") / iterations / r.points) : "",
+        r.check, join(r.phases, [](const auto& p) { return fmt::format("{}: {:.2f}", p.first, 1e6 * p.second); }),
         join(longest,
              [&](const auto& k) {
                return fmt::format("{}: {:.2f}", k.name, 1e6 * k.seconds) +

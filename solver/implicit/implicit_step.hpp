@@ -102,16 +102,22 @@ class ImplicitStep {
     return {.force = std::sqrt(balance.residual),
             .size = force_size(balance, scheme_.stopping_share()),
             .along = balance.along,
+            .downhill = std::abs(balance.downhill),
             .changed = balance.changes > 0};
   }
 
   /// The method solves the linear system (T19) for the change of u, to a relative residual of `tolerance`.
   LinearReport solve(double tolerance) { return tangent_.solve(nodes_.residual, nodes_.change, tolerance); }
 
-  /// The method keeps u as the place where a line search begins; returns |r . change| [N m].
-  double begin_search() {
-    copy(nodes_.u, nodes_.saved_u);
-    return std::abs(dot(nodes_.residual, nodes_.change));
+  /// The method keeps u as the place where a line search begins. The host hears of |r . change| there with the next
+  /// residual, and does not wait for it.
+  void begin_search() {
+    sum_each<1>(parts_.device, nodes_.count, parts_.sums,
+                BeginSearch{.u = nodes_.u.data(),
+                            .residual = nodes_.residual.data(),
+                            .change = nodes_.change.data(),
+                            .saved = nodes_.saved_u.data()},
+                KeepTotals<1>{&balance_.data()->downhill});
   }
   /// The method adds `share` of the change to u.
   void apply_change(double share) { axpby(share, nodes_.change, 1.0, nodes_.u); }

@@ -18,6 +18,7 @@ struct Unbalanced {
   double force = 0;      ///< |r| [N]
   double size = 1;       ///< what |r| is measured against [N]
   double along = 0;      ///< r . change, while contacts are kept [N m]
+  double downhill = 0;   ///< |r . change| where the last search began [N m]
   bool changed = false;  ///< contacts have changed their states
 };
 
@@ -26,7 +27,7 @@ template <class P>
 concept SearchProblem = requires(P& p, double number) {
   p.measure(Linearisation::consistent);
   { p.residual(Contacts::kept) } -> std::same_as<Unbalanced>;
-  { p.begin_search() } -> std::same_as<double>;
+  p.begin_search();
   p.apply_change(number);
   p.stick_reversed();
   p.return_to_start();
@@ -39,7 +40,7 @@ concept SearchProblem = requires(P& p, double number) {
 /// says so before. `size`: of the forces [N].
 template <SearchProblem Problem, class GivesUp>
 bool line_search(Problem& problem, double before, double size, const GivesUp& gives_up) {
-  const double downhill = problem.begin_search();
+  problem.begin_search();
   double share = 1;
   for (int halving = 0; halving < 10 && !gives_up(); ++halving) {
     problem.apply_change(share);
@@ -47,7 +48,7 @@ bool line_search(Problem& problem, double before, double size, const GivesUp& gi
     problem.measure(Linearisation::consistent);
     const Unbalanced trial = problem.residual(Contacts::kept);
     const double after = trial.force, along = std::abs(trial.along);
-    if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * downhill)) return true;
+    if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * trial.downhill)) return true;
     if (trial.changed && after < 2 * before) return true;  // another active set: Newton goes on with that
     // The change that must be made at the end of convergence is rounding: take it.
     if (halving == 0 && after <= 1e-11 * size) return true;

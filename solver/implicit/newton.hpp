@@ -26,7 +26,7 @@ struct Motion {
 ///   measure(l)             forces and tangent for the present u
 ///   residual(c)            r for them, under contacts as they are or decided anew (which may move u)
 ///   solve(tolerance)       change = tangent^-1 r, to a relative residual of `tolerance`
-///   begin_search()         remembers u; returns |r . change|
+///   begin_search()         remembers u, and |r . change| there for residual()
 ///   apply_change(share)    u += share change
 ///   return_to_start()      u is what it was at begin_search()
 ///   stick_reversed()       slipping contacts that u takes back stick

@@ -13,6 +13,7 @@ struct Balance {
   double forces = 0;    ///< that balance, squared [N2]
   double residual = 0;  ///< squared [N2]
   double along = 0;     ///< residual . change [N m]
+  double downhill = 0;  ///< the same where the last line search began [N m]
   double changes = 0;   ///< of contacts
   double pull = 0;      ///< see Constraints [N]
 };
@@ -83,6 +84,16 @@ struct FinishResidual {
 struct FinishReversals {
   Balance* balance;
   TALUS_HD void operator()(const double* total) const { balance->changes += *total; }
+};
+
+/// One thread: one node. It keeps u as the place where a line search begins; sum: the residual along the change.
+struct BeginSearch {
+  const Vec3<double>*u, *residual, *change;
+  Vec3<double>* saved;
+  TALUS_HD Terms<1> operator()(int n) const {
+    saved[n] = u[n];
+    return {{dot(residual[n], change[n])}};
+  }
 };
 
 /// One thread. It forgets the changes of contacts so far.

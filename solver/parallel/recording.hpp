@@ -21,7 +21,7 @@ class Recording;
 template <>
 class Recording<CpuDevice> {
  public:
-  explicit Recording(const CpuDevice&, bool = false) {}
+  explicit Recording(const CpuDevice&, bool = false, int = 1) {}
   /// The method does body() as often as `times`.
   template <class Body>
   void repeat(int times, const Body& body) {
@@ -67,9 +67,10 @@ template <>
 class Recording<GpuDevice> {
  public:
   /// With `with_others` the work may be started with that of other runs: it does nothing but start kernels that can be
-  /// (runs_with_others()) and fill with zeros. Otherwise repeat() throws std::logic_error where there are others.
-  explicit Recording(GpuDevice device, bool with_others = false)
-      : device_(std::move(device)), with_others_(with_others) {}
+  /// (runs_with_others()) and fill with zeros. Otherwise repeat() throws std::logic_error where there are others. The
+  /// first `plain` times are done as they are: enough to keep the GPU at work for as long as recording takes.
+  explicit Recording(GpuDevice device, bool with_others = false, int plain = 1)
+      : device_(std::move(device)), with_others_(with_others), plain_(plain) {}
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
   ~Recording() {
@@ -78,8 +79,8 @@ class Recording<GpuDevice> {
   }
 
   /// The method does body() as often as `times`. It must start the same kernels with the same arguments on the
-  /// recording's device every time, until forget() is called, and neither upload nor download. The first is done as it
-  /// is, so that buffers find their sizes.
+  /// recording's device every time, until forget() is called, and neither upload nor download. The first times are done
+  /// as they are, so that buffers find their sizes, and all where few are left to be started from a recording.
   template <class Body>
   void repeat(int times, const Body& body) {
     repeat(
@@ -107,10 +108,7 @@ class Recording<GpuDevice> {
   void repeat_alone(int times, const Body& body) {
     const bool measured = device_.profile().with_kernels();
     if (marked_ != measured) recorded_ = false;
-    if (!recorded_ && times > 0) {
-      body();
-      --times;
-    }
+    for (int first = times <= 2 * plain_ ? times : plain_; !recorded_ && first > 0; --first, --times) body();
     if (times > 0 && measured) return repeat_measured(times, body);
     if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
@@ -162,6 +160,7 @@ class Recording<GpuDevice> {
 
   GpuDevice device_;
   bool with_others_;
+  int plain_;
   void* graph_ = nullptr;
   std::vector<Profile::Mark> marks_;  ///< of its kernels, under --profile
   bool recorded_ = false, marked_ = false;

@@ -67,11 +67,14 @@ class ConjugateGradient {
     return {close, state_.data(), p_.data(), ap_.data()};
   }
 
+  /// The iterations in which a GPU works as long as the host takes to record one.
+  static constexpr int plain_iterations = 3;
+
   Device device_;
   NodeVector<Device> r_{device_}, z_{device_}, p_{device_}, ap_{device_};
   Buffer<CgState, Device> state_{device_};
   SumSpace<Device> sums_{device_};
-  Recording<Device> loop_{device_};
+  Recording<Device> loop_{device_, false, plain_iterations};
   int last_ = 0;
 };
 

@@ -59,6 +59,7 @@ struct ToyProblem {
     return {.force = residual_.norm(),
             .size = size,
             .along = change.size() > 0 ? residual_.dot(change) : 0,
+            .downhill = downhill_,
             .changed = changed};
   }
 
@@ -80,10 +81,10 @@ struct ToyProblem {
     return report;
   }
 
-  double begin_search() {
+  void begin_search() {
     ++searches;
     start_ = u;
-    return std::abs(residual_.dot(change));
+    downhill_ = std::abs(residual_.dot(change));
   }
   void apply_change(double share) { u += share * change; }
   void return_to_start() { u = start_; }
@@ -117,6 +118,7 @@ struct ToyProblem {
   }
 
   Vector forces_, residual_, start_;
+  double downhill_ = 0;
   Matrix tangent_;
   bool reversed_ = false;
 };
