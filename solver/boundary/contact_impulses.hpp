@@ -6,8 +6,9 @@
 // With shares M of a point in the nodes (ContactView::around), its velocity is v = sum M_i v_i, and an impulse p there
 // changes that by sum M_i^2 / m_i p. In a sweep all points act at once on what the last one left, each divided by the
 // sum of what all together do to it, sum_i M_i Q_i with Q_i = sum M_i / m_i over the points (Jacobi's method with
-// absolute row sums, which cannot overshoot): a uniform approach is taken away by one sweep. Forces are kept from step
-// to step (warm start), so that what rests stays.
+// absolute row sums, which cannot overshoot): a uniform approach is taken away by one sweep. Where an impulse moves
+// whole columns (T6c), Q is what it does to them. Forces are kept from step to step (warm start), so that what rests
+// stays.
 #pragma once
 
 #include "solver/boundary/surface_contact.hpp"
@@ -54,9 +55,9 @@ struct PackedMomenta {
   }
 };
 
-/// One thread: one contact point. It measures what mass is before it, and how much the points together move each node.
-/// The impulse of the last step's force acts once more.
-template <class Real, class Shape, class Nodes>
+/// One thread: one contact point. It measures what mass is before it, and the shares that the points together have in
+/// each node; of nodes that are `single`, how much they move it. The impulse of the last step's force acts once more.
+template <class Real, class Shape, class Nodes, bool single>
 struct BeginContacts {
   GridView<Real> grid;
   ContactView<Real> contacts;
@@ -64,7 +65,7 @@ struct BeginContacts {
   const Clock* clock;   ///< null: no history
   Vec3<Real>* impulse;  ///< of this step [N s]
   Vec3<Real>* given;    ///< to the nodes, not yet in their velocity [N s]
-  Real* yielding;       ///< of the nodes to all points: Q_i [1/kg]
+  Real* yielding;       ///< of the nodes to all points: Q_i [1/kg], or shares in nodes that are not single
 
   TALUS_HD void operator()(int c) const {
     if (clock && clock->halt != running) return;
@@ -79,7 +80,7 @@ struct BeginContacts {
     impulse[c] = p;
     if (!(inverse > Real(0))) return;
     contacts.template around<Shape>(grid, nodes, c, [&](int n, Real share) {
-      talus::scatter_add(&yielding[n], share / nodes.mass(n));
+      talus::scatter_add(&yielding[n], single ? share / nodes.mass(n) : share);
       talus::scatter_add(&given[n], p * share);
     });
   }
@@ -151,6 +152,25 @@ struct TakeImpulses {
   }
 };
 
+/// Inertia by nodes, for ContactImpulses: an impulse on a node moves that node alone.
+template <class Device>
+class NodeInertia {
+ public:
+  static constexpr bool of_single_nodes = true;  ///< contact points work out themselves how much they move a node
+
+  explicit NodeInertia(const Device& device) : device_(device) {}
+
+  /// The method takes the impulses given to `count` nodes [N s] into their velocities, and clears them. Nothing is done
+  /// where the clock, if there is one, has halted.
+  template <class Nodes, class Real>
+  void take(const Nodes& nodes, const Clock* clock, Vec3<Real>* given, int count) const {
+    for_each(device_, count, TakeImpulses<Real, Nodes>{nodes, clock, given});
+  }
+
+ private:
+  Device device_;
+};
+
 /// The sweeps (T12a) of a step with their arrays.
 template <class Real, class Device, class Shape>
 class ContactImpulses {
@@ -164,10 +184,12 @@ class ContactImpulses {
     double step;
     bool grips, remembers;
   };
-  /// The method makes the sweeps of a pass over `node_count` nodes; `layer_mass` is that of a full layer [kg/m2].
-  template <class Nodes>
+  /// The method makes the sweeps of a pass over `node_count` nodes; `layer_mass` is that of a full layer [kg/m2]. How
+  /// nodes answer to an impulse is the matter of `inertia` (NodeInertia, ColumnInertia).
+  template <class Nodes, class Inertia>
   void run(SurfaceContact<Real, Device, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
-           double layer_mass, const Pass& pass) {
+           const Inertia& inertia, double layer_mass, const Pass& pass) {
+    constexpr bool single = Inertia::of_single_nodes;
     impulse_.resize(static_cast<std::size_t>(contact.count()));
     yielding_.resize(static_cast<std::size_t>(node_count));
     yielding_.fill_zero();
@@ -175,11 +197,11 @@ class ContactImpulses {
       given_.resize(static_cast<std::size_t>(node_count));
       given_.fill_zero();
     }
-    const auto take = [&] {
-      for_each(device_, node_count, TakeImpulses<Real, Nodes>{nodes, pass.clock, given_.data()});
-    };
-    contact.each(BeginContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, pass.remembers ? pass.clock : nullptr,
-                                                   impulse_.data(), given_.data(), yielding_.data()});
+    const auto take = [&] { inertia.take(nodes, pass.clock, given_.data(), node_count); };
+    contact.each(BeginContacts<Real, Shape, Nodes, single>{grid, contact.view(), nodes,
+                                                           pass.remembers ? pass.clock : nullptr, impulse_.data(),
+                                                           given_.data(), yielding_.data()});
+    if constexpr (!single) inertia.yield(yielding_.data());
     if (pass.remembers) take();
     for (int s = 0; s < contact_sweeps; ++s) {
       const bool last = pass.remembers && s + 1 == contact_sweeps;

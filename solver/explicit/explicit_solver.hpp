@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "solver/explicit/column_contact.hpp"
+#include "solver/explicit/column_inertia.hpp"
 #include "solver/explicit/ends_of_steps.hpp"
 #include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/explicit/solve_columns.hpp"
@@ -320,11 +321,13 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
   /// The springs along the bed over those across it (T6b) [-]: the modulus of shear over that of uniaxial strain, of
-  /// the material where that is most. Where columns stand on more than their bed (walls across z), or not across it
-  /// (Cartesian grids), springs are the same in all directions, which is an upper bound too.
+  /// the material where that is most. Where columns meet more than their bed (walls across z, contact points), or stand
+  /// not across it (Cartesian grids), springs are the same in all directions, which is an upper bound too.
   static Real softer(const Scene& scene, const IntegratorSettings& settings) {
     const auto across_z = [](const PlaneWall& wall) { return wall.axis == 2; };
-    if (scene.grid.mapping == Mapping::cartesian || std::ranges::any_of(settings.walls, across_z)) return Real(1);
+    if (scene.grid.mapping == Mapping::cartesian || scene.contacts.size() > 0 ||
+        std::ranges::any_of(settings.walls, across_z))
+      return Real(1);
     Real most = 0;
     for (const Material<Real>& m : settings.materials.in<Real>().list) {
       const Real uniaxial = m.density * m.wave_speed * m.wave_speed;
@@ -340,8 +343,27 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase(device_, "contact");
     constexpr bool first = content != NodeContent::remapped;
     const PackedNodes<Real> nodes = step_nodes<content>().nodes;
-    surroundings_.impulses().run(surroundings_.contact(), grid_.view(), nodes, grid_.nodes(), this->layer_mass(),
-                                 {clock_.data(), 0, first, first});
+    const auto run = [&](const auto& inertia) {
+      surroundings_.impulses().run(surroundings_.contact(), grid_.view(), nodes, grid_.nodes(), inertia,
+                                   this->layer_mass(), {clock_.data(), 0, first, first});
+    };
+    if constexpr (content == NodeContent::force) {
+      if (solves_columns_) {
+        run(ColumnInertia<Real, Device>(device_, factors(), grid_.active_blocks()));
+        return;
+      }
+    }
+    run(NodeInertia<Device>(device_));
+  }
+
+  /// The columns once they have been solved for.
+  ColumnFactors<Real> factors() {
+    return {.grid = grid_.view(),
+            .active = grid_.active_list(),
+            .clock = clock_.data(),
+            .mobilities = mobilities_.data(),
+            .forces = forces_.data(),
+            .kappa = static_cast<Real>(settings_.steps.kappa)};
   }
 
   template <Gather part>

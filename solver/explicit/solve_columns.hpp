@@ -7,6 +7,7 @@
 #include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/ground_turn.hpp"
 #include "solver/boundary/walls.hpp"
+#include "solver/explicit/column_inertia.hpp"
 #include "solver/explicit/node_step.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/state/gravity.hpp"
@@ -14,17 +15,11 @@
 
 namespace talus {
 
-/// What an impulse on a node does when the nodes above follow, across the bed and along it: the reciprocals of its
-/// pivots in the elimination down its column [1/kg]. 0 where there is no matter.
-template <class Real>
-struct Mobility {
-  Real across = 0, along = 0;
-};
-
 /// One thread: one column. It makes the step (T6a) of the column's nodes, dv = (M + kappa dt^2 K)^-1 dt (f + M g), with
 /// springs K between neighbouring layers: uniaxial ones across the bed, shear ones along it. Elimination goes down the
 /// column, so that the nodes at the bed meet it (T12) with the inertia of what lies on them, and what they get is
 /// passed on upwards. K acts on changes of velocity alone: momentum, free fall and rest are those of an explicit step.
+/// Mobilities and springs stay, for what the nodes are given later in the step (ColumnFactors).
 /// With `counts` the losses (T24) are counted.
 template <class Real, bool counts = false>
 struct SolveColumns {

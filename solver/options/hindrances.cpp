@@ -9,9 +9,6 @@
 namespace talus::solver {
 
 Hindrance beyond_columns(const SolveOptions& o) {
-  if (o.meets_points())
-    return {o.contact_words(),
-            "contact between the nodes acts after the columns have been solved for, and could not hold them"};
   for (const WallOptions& wall : o.walls)
     if (wall.axis == Axis::z && wall.material_is == Side::below)
       return {"a [[solve.wall]] across z above the material", "columns are solved for from their foot upwards"};

@@ -44,15 +44,17 @@ SolveOptions rigid(Integrator integrator) {
 
 class SurfaceContactTest : public InEachPlace {};
 
-constexpr Integrator both[] = {Integrator::explicit_, Integrator::newmark};
-const char* name_of(Integrator i) { return i == Integrator::newmark ? "newmark" : "explicit"; }
+constexpr Integrator each_of_them[] = {Integrator::explicit_, Integrator::column_implicit, Integrator::newmark};
+const char* name_of(Integrator i) {
+  return i == Integrator::newmark ? "newmark" : i == Integrator::column_implicit ? "column-implicit" : "explicit";
+}
 
 TEST_P(SurfaceContactTest, block_slides_on_ground_between_the_nodes) {  // validation.md B1 on a Cartesian grid
   struct Incline {
     double angle, direction, friction;
     int layers;
   };
-  for (const Integrator integrator : both) {
+  for (const Integrator integrator : each_of_them) {
     for (const Incline c :
          {Incline{30, 0, 20, 4}, Incline{30, 37, 20, 4}, Incline{45, 60, 25, 2}, Incline{20, 200, 5, 1}}) {
       if (integrator == Integrator::newmark && c.layers == 4) continue;  // minutes
@@ -92,7 +94,7 @@ TEST_P(SurfaceContactTest, rests_on_ground_between_the_nodes_below_its_friction_
   const double slope = std::tan(25 * degree);
   Domain d = ground(40, 40, 1.0, 1.0, [&](double x, double y) { return 100 - slope * (0.8 * x + 0.6 * y); });
   fill(d, {16, 22, 16, 22, 0, 2});
-  for (const Integrator integrator : both) {
+  for (const Integrator integrator : each_of_them) {
     SolveOptions o = rigid(integrator);
     o.mapping = Mapping::cartesian;
     o.ground_contact = GroundContact::points;
@@ -112,7 +114,7 @@ TEST_P(SurfaceContactTest, rests_on_ground_between_the_nodes_below_its_friction_
 TEST_P(SurfaceContactTest, wall_takes_the_momentum_of_what_it_stops) {
   Domain d = ground(48, 24, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {10, 16, 8, 14, 0, 3});
-  for (const Integrator integrator : both) {
+  for (const Integrator integrator : each_of_them) {
     SolveOptions o = rigid(integrator);
     o.initial_velocity = {5, 0, 0};
     o.base.law = FrictionLaw::none;
@@ -138,7 +140,7 @@ TEST_P(SurfaceContactTest, thin_wall_carries_earth_pressure) {
   Domain d = ground(24, 16, 1.0, 1.0, [](double, double) { return 0.0; });
   d.grid.west = d.grid.south = -0.5;  // nodes at whole metres, where the rollers stand
   fill(d, {5, 11.5, 5, 11, 0, 4});
-  for (const Integrator integrator : both) {
+  for (const Integrator integrator : each_of_them) {
     SolveOptions o = rigid(integrator);
     o.damping = 0.3;
     o.base.law = FrictionLaw::none;
@@ -165,7 +167,7 @@ TEST_P(SurfaceContactTest, thin_wall_carries_earth_pressure) {
 TEST_P(SurfaceContactTest, sand_stays_before_a_wall_thinner_than_a_cell) {
   Domain d = ground(48, 24, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {6, 16, 4, 20, 0, 6});
-  for (const Integrator integrator : both) {
+  for (const Integrator integrator : each_of_them) {
     SolveOptions o;
     o.integrator = integrator;
     o.implicit.step = 0.02;

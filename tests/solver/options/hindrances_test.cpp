@@ -16,11 +16,11 @@ TEST(Hindrances, none_stand_in_the_way_of_a_plain_recipe) {
   EXPECT_FALSE(beyond_rest(o));
 }
 
-TEST(Hindrances, of_columns_are_contact_between_nodes_and_walls_above) {
+TEST(Hindrances, of_columns_are_walls_above) {
   SolveOptions contact;
   contact.mapping = Mapping::cartesian;
   contact.ground_contact = GroundContact::points;
-  EXPECT_EQ(beyond_columns(contact).key, contact.contact_words());
+  EXPECT_FALSE(beyond_columns(contact));
   SolveOptions floor;
   floor.walls.push_back({.axis = Axis::z, .material_is = Side::above});
   EXPECT_FALSE(beyond_columns(floor));
