@@ -98,7 +98,6 @@ class ImplicitStep {
                                 .change = decide ? nullptr : nodes_.change.data()},
                 FinishResidual{balance_.data()});
     const Balance balance = balance_.download().front();
-    for_each(parts_.device, 1, ForgetChanges{balance_.data()});
     return {.force = std::sqrt(balance.residual),
             .size = force_size(balance, scheme_.stopping_share()),
             .along = balance.along,

@@ -9,13 +9,14 @@ namespace talus::solver {
 
 /// The sums over the nodes that steer Newton's iterations, kept beside the nodes.
 struct Balance {
-  double momentum = 0;  ///< at the start of the step, squared [(kg m/s)2]
-  double forces = 0;    ///< that balance, squared [N2]
-  double residual = 0;  ///< squared [N2]
-  double along = 0;     ///< residual . change [N m]
-  double downhill = 0;  ///< the same where the last line search began [N m]
-  double changes = 0;   ///< of contacts
-  double pull = 0;      ///< see Constraints [N]
+  double momentum = 0;   ///< at the start of the step, squared [(kg m/s)2]
+  double forces = 0;     ///< that balance, squared [N2]
+  double residual = 0;   ///< squared [N2]
+  double along = 0;      ///< residual . change [N m]
+  double downhill = 0;   ///< the same where the last line search began [N m]
+  double changes = 0;    ///< of contacts, with the slips that were turned back before they were counted
+  double reversals = 0;  ///< such slips, not yet among the changes
+  double pull = 0;       ///< see Constraints [N]
 };
 
 /// One thread: one node. It gives the squares of the forces that balance.
@@ -77,13 +78,14 @@ struct FinishResidual {
   TALUS_HD void operator()(const double* total) const {
     balance->residual = total[0];
     balance->along = total[1];
-    balance->changes += total[2];
+    balance->changes = total[2] + balance->reversals;
+    balance->reversals = 0;
   }
 };
-/// One thread. It counts slips that a trial has turned back as changes of the contacts.
+/// One thread. It keeps the slips that a trial has turned back, for the next residual to count as changes of contacts.
 struct FinishReversals {
   Balance* balance;
-  TALUS_HD void operator()(const double* total) const { balance->changes += *total; }
+  TALUS_HD void operator()(const double* total) const { balance->reversals += *total; }
 };
 
 /// One thread: one node. It keeps u as the place where a line search begins; sum: the residual along the change.
@@ -94,12 +96,6 @@ struct BeginSearch {
     saved[n] = u[n];
     return {{dot(residual[n], change[n])}};
   }
-};
-
-/// One thread. It forgets the changes of contacts so far.
-struct ForgetChanges {
-  Balance* balance;
-  TALUS_HD void operator()(int) const { balance->changes = 0; }
 };
 
 /// One thread: one node. It completes the product with the tangent of (T16): y = freed (y + mass inertia x + friction's

@@ -57,7 +57,11 @@ namespace detail {
 
 struct FinishBegin {
   CgState* state;
-  TALUS_HD void operator()(const double* total) const { state->begin(*total); }
+  CgState fresh;
+  TALUS_HD void operator()(const double* total) const {
+    *state = fresh;
+    state->begin(*total);
+  }
 };
 struct FinishCurvature {
   CgState* state;

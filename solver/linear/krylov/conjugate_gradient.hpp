@@ -29,10 +29,10 @@ class ConjugateGradient {
     CgState state;
     state.tolerance = limits.tolerance;
     state.most = limits.iterations;
-    state_.upload({state});
+    state_.resize(1);
     CgState* const s = state_.data();
     sum_each<1>(device_, count, sums_, detail::BeginCg{b.data(), x.data(), r_.data(), z_.data(), p_.data(), ap_.data()},
-                detail::FinishBegin{s});
+                detail::FinishBegin{s, state});
     preconditioner.apply(r_, z_, s);
     // As many as the last solve took, then a few at a time: what is started after the end does nothing but take its
     // time.

@@ -127,7 +127,7 @@ TEST(Balance, is_measured_against_forces_and_rounding) {
   EXPECT_GT(force_size(Balance{}, 0), 0) << "nothing is divided by zero";
 }
 
-TEST(Balance, counts_changes_until_they_are_forgotten) {
+TEST(Balance, counts_changes_since_the_last_residual) {
   Balance balance;
   const double sums[3] = {4, 2, 1}, reversals = 2;
   FinishReversals{&balance}(&reversals);
@@ -135,7 +135,8 @@ TEST(Balance, counts_changes_until_they_are_forgotten) {
   EXPECT_EQ(balance.residual, 4);
   EXPECT_EQ(balance.along, 2);
   EXPECT_EQ(balance.changes, 3);
-  ForgetChanges{&balance}(0);
+  const double none[3] = {4, 2, 0};
+  FinishResidual{&balance}(none);
   EXPECT_EQ(balance.changes, 0);
 }
 
