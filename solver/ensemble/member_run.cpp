@@ -85,7 +85,7 @@ MemberResult measured(const RunMaps& maps, double threshold) {
 
 std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& options, const AnyDevice& device) {
   RunTimer timer;
-  RunLoop loop(domain, options, device);
+  RunLoop loop(domain, options, device, HistoryUse::judged);
   Facts accepted = judged_before_run(domain, loop.scene(), loop.options()).facts();
   loop.start();
   MemberKeeper keeper;

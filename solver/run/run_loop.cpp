@@ -24,13 +24,13 @@ std::vector<double> times_of(const Inflow& inflow) {
 
 }  // namespace
 
-RunLoop::RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device)
+RunLoop::RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device, HistoryUse use)
     : domain_(domain),
       options_(with_preset(options)),
       scene_(make_scene(domain, options_)),
       schedule_(options_, times_of(scene_.inflow)),
       stepper_(scene_, options_, device),
-      history_(options_, scene_),
+      history_(options_, scene_, use),
       watch_(scene_, options_) {}
 
 void RunLoop::start() {

@@ -52,7 +52,8 @@ class RunLoop {
  public:
   /// The constructor places the points and prepares the recorders; no step is taken. It keeps a reference to `domain`,
   /// and throws RecipeError and DataError.
-  RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device);
+  RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device,
+          HistoryUse use = HistoryUse::kept);
   RunLoop(const RunLoop&) = delete;
   RunLoop& operator=(const RunLoop&) = delete;
 

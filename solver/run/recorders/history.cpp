@@ -66,6 +66,7 @@ constexpr Column<Instant> shaking_budget_columns[] = {
 class RunRecorder : public TableRecorder<Instant> {
  public:
   explicit RunRecorder(std::span<const Column<Instant>> table) : TableRecorder(table, {Place{}}) {}
+  bool judges() const override { return true; }
 
  protected:
   std::vector<Instant> samples(const Instant& now) const override { return {now}; }
@@ -89,6 +90,7 @@ constexpr Column<InflowReading> inflow_columns[] = {
 class InflowRecorder : public TableRecorder<InflowReading> {
  public:
   explicit InflowRecorder(const Inflow& inflow) : TableRecorder(inflow_columns, {Place{}}), inflow_(inflow) {}
+  bool judges() const override { return true; }
 
  protected:
   std::vector<InflowReading> samples(const Instant& now) const override {
@@ -109,6 +111,7 @@ constexpr Column<Packing> packing_columns[] = {
 class PackingRecorder : public TableRecorder<Packing> {
  public:
   PackingRecorder() : TableRecorder(packing_columns, {Place{}}) {}
+  bool judges() const override { return true; }
 
  protected:
   std::vector<Packing> samples(const Instant& now) const override { return {now.solver.packing()}; }
@@ -135,7 +138,9 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
 
 }  // namespace
 
-History::History(const SolveOptions& options, const Scene& scene) : recorders_(make_recorders(options, scene)) {
+History::History(const SolveOptions& options, const Scene& scene, HistoryUse use)
+    : recorders_(make_recorders(options, scene)) {
+  if (use == HistoryUse::judged) std::erase_if(recorders_, [](const auto& recorder) { return !recorder->judges(); });
   for (const auto& recorder : recorders_) recorder->add_columns(rows_);
 }
 

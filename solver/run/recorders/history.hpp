@@ -13,12 +13,16 @@
 
 namespace talus::solver {
 
+/// What a history is for: to be kept with the run, or to judge by whether the run can be trusted.
+enum class HistoryUse { kept, judged };
+
 /// The history of a run: its columns and the recorders that fill them.
 class History {
  public:
-  /// The constructor makes the recorders that the recipe asks for, which may keep references to the scene. It throws
-  /// RecipeError where one of them cannot measure what it is asked to.
-  History(const SolveOptions& options, const Scene& scene);
+  /// The constructor makes the recorders that the recipe asks for, which may keep references to the scene; of a history
+  /// to judge by those alone that tell something of that. It throws RecipeError where one of them cannot measure what
+  /// it is asked to.
+  History(const SolveOptions& options, const Scene& scene, HistoryUse use = HistoryUse::kept);
 
   /// The method adds a row.
   void record(const Instant& now);

@@ -55,6 +55,8 @@ class Recorder {
   virtual std::vector<std::string> conclusions(const RunHistory&) const { return {}; }
   /// What went wrong on the way, for the log at the end of the run.
   virtual std::vector<std::string> warnings(const RunHistory&) const { return {}; }
+  /// Whether its columns tell if a run can be trusted, also where nobody reads them otherwise.
+  virtual bool judges() const { return false; }
 };
 
 /// A recorder with the same columns for every one of its places.

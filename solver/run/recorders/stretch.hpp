@@ -30,6 +30,7 @@ class StretchRecorder : public TableRecorder<Overstretched> {
   StretchRecorder(const SolveOptions& options, const Scene& scene);
   /// Whether some material of the scene has such a law.
   static bool watches(const SolveOptions& options);
+  bool judges() const override { return true; }
   /// What to say where points have gone beyond it; none where none has.
   std::vector<std::string> warnings(const RunHistory& history) const override;
 

@@ -50,6 +50,21 @@ const std::vector<std::string> names_of_every_run = {"time_s",
                                                      "ground_force_y_N",
                                                      "ground_force_z_N"};
 
+TEST(History, to_judge_by_has_no_columns_that_only_readers_want) {
+  SolveOptions o;
+  const Domain d = block_on_plain();
+  const Scene scene = make_scene(d, o);
+  o.obstacles.resize(1);
+  o.obstacles[0].name = "wall";
+  const History judged(o, scene, HistoryUse::judged);
+  for (const char* name : {"kinetic_J", "volume_m3", "speed_max_m_s", "packing_p99"})
+    EXPECT_TRUE(judged.rows().find(name)) << name;
+  for (const char* name : {"ground_force_x_N", "obstacle_wall_impulse_x_N_s"}) {
+    EXPECT_FALSE(judged.rows().find(name)) << name;
+    EXPECT_TRUE(History(o, scene).rows().find(name)) << name;
+  }
+}
+
 TEST(History, has_the_columns_that_readers_know_in_their_order) {
   SolveOptions o;
   const Domain d = block_on_plain();
