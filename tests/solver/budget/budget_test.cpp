@@ -255,7 +255,8 @@ TEST(BudgetVariations, are_those_of_the_law_of_the_bed) {
 }
 
 TEST(BudgetVariations, leave_out_what_the_recipe_does_not_allow) {
-  const BudgetScene scene(heap_recipe("mapping = \"cartesian\"\nground_contact = \"points\"\n"), small_heap());
+  const BudgetScene scene(heap_recipe() + "[[solve.wall]]\naxis = \"z\"\nposition_m = 100\nmaterial_is = \"below\"\n",
+                          small_heap());
   bool found = false;
   for (const Variation& one : scene.variations()) {
     if (one.run.name != "integrator") continue;
