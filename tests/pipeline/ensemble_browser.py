@@ -82,6 +82,13 @@ def check_slider(browser, out):
                 if seen is None or seen != seen or values[row, column] < 0:
                     continue  # outside the window that is shown
                 assert abs(seen - values[row, column]) < 1e-4, f"{seen} at {x}, {y} instead of {values[row, column]}"
+    # A map that is painted anew stays below the outlines.
+    level = "return Number(getComputedStyle(arguments[0].closest('.leaflet-pane')).zIndex)"
+    painted_at, drawn_at = (
+        browser.execute_script(level, browser.execute_script(f"return ensemble.{what}"))
+        for what in ("map.thematic._image", "outlines.renderer._container")
+    )
+    assert painted_at < drawn_at, f"the map at {painted_at} covers the outlines at {drawn_at}"
 
 
 def click_at(browser, canvas, x, y):

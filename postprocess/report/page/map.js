@@ -5,8 +5,9 @@ import { blending, paintGround, Painter } from "./paint.js";
 import { number } from "./format.js";
 import { placesLayer } from "./places.js";
 
-/** A canvas laid over a part of the map. */
+/** A canvas laid over a part of the map, below all lines, whenever it is made. */
 const CanvasOverlay = L.ImageOverlay.extend({
+  options: { pane: "fields" },
   _initImage() {
     const canvas = this._url; // Leaflet's name for what is shown
     L.DomUtil.addClass(canvas, "leaflet-image-layer");
@@ -71,6 +72,7 @@ export class ReportMap {
     this.canvas = document.createElement("canvas");
     this.fit(element);
     this.leaflet = this.makeLeaflet(element);
+    this.leaflet.createPane("fields").style.zIndex = 350; // lines: 400
     this.leaflet.addLayer(new CanvasOverlay(this.ground, boundsOf(fields.ground.shade)));
     this.thematic = null;
     this.overlays = new Map(lines.map((line) => [line.id, lineLayer(line).addTo(this.leaflet)]));
