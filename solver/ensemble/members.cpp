@@ -58,7 +58,6 @@ SettledOnce settle_once(const Domain& domain, const SolveOptions& base) {
   if (base.integrator != Integrator::automatic) return settled;
   settled.steps = choose_steps(domain, stiff);
   for (const std::string& reason : settled.steps->reasons) log_info("steps: " + reason);
-  if (const std::string unkept = unkept_accuracy(domain, base); !unkept.empty()) log_warning(unkept);
   return settled;
 }
 
@@ -72,7 +71,9 @@ Members::Members(const recipe::Recipe& recipe, const MemberTable& table, const E
       domain_(domain),
       settles_each_(varies_settling(table)),
       settled_(settles_each_ ? SettledOnce{} : settle_once(domain, base)),
-      base_(settles_each_ ? settle_steps(domain, settle_stiffness(domain, base)) : settled_by(settled_, base)) {}
+      base_(settles_each_ ? settle_steps(domain, settle_stiffness(domain, base)) : settled_by(settled_, base)) {
+  if (const std::string unkept = unkept_accuracy(domain, base); !unkept.empty()) log_warning(unkept);
+}
 
 SolveOptions Members::options_of(std::int64_t member) const {
   try {

@@ -68,12 +68,11 @@ TEST(ColumnInertia, gives_what_the_matrix_of_a_column_gives) {
   KeptColumn c;
   Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(KeptColumn::layers, 3);
   for (const int k : {1, 2, 5}) impulses.row(k) << 40.0 * k, -7, 12.0 / k;
-  for (int k = 0; k < KeptColumn::layers; ++k)
-    c.given[c.place(k)] = {impulses(k, 0), impulses(k, 1), impulses(k, 2)};
+  for (int k = 0; k < KeptColumn::layers; ++k) c.given[c.place(k)] = {impulses(k, 0), impulses(k, 1), impulses(k, 2)};
   const Eigen::MatrixXd change = c.matrix.partialPivLu().solve(impulses);
   c.take();
   for (int k = 0; k < KeptColumn::layers; ++k) {
-    const Vec4<double> &node = c.nodes[c.place(k)], &kept = c.changes[c.place(k)];
+    const Vec4<double> node = c.nodes[c.place(k)], kept = c.changes[c.place(k)];
     EXPECT_NEAR(node.x, (k == KeptColumn::empty ? 0 : 3) + change(k, 0), 1e-14) << k;
     EXPECT_NEAR(node.y, change(k, 1), 1e-14) << k;
     EXPECT_NEAR(node.z, change(k, 2), 1e-14) << k;
