@@ -182,13 +182,14 @@ class ContactImpulses {
   struct Pass {
     const Clock* clock;
     double step;
+    double layer_mass;  ///< of a full layer over a square metre [kg/m2]
     bool grips, remembers;
   };
-  /// The method makes the sweeps of a pass over `node_count` nodes; `layer_mass` is that of a full layer [kg/m2]. How
-  /// nodes answer to an impulse is the matter of `inertia` (NodeInertia, ColumnInertia).
+  /// The method makes the sweeps of a pass over `node_count` nodes. How these answer to an impulse is the matter of
+  /// `inertia` (NodeInertia, ColumnInertia).
   template <class Nodes, class Inertia>
   void run(SurfaceContact<Real, Device, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
-           const Inertia& inertia, double layer_mass, const Pass& pass) {
+           const Inertia& inertia, const Pass& pass) {
     constexpr bool single = Inertia::of_single_nodes;
     impulse_.resize(static_cast<std::size_t>(contact.count()));
     yielding_.resize(static_cast<std::size_t>(node_count));
@@ -205,7 +206,7 @@ class ContactImpulses {
     if (pass.remembers) take();
     for (int s = 0; s < contact_sweeps; ++s) {
       const bool last = pass.remembers && s + 1 == contact_sweeps;
-      contact.each(SweepContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, yielding_.data(), layer_mass,
+      contact.each(SweepContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, yielding_.data(), pass.layer_mass,
                                                      pass.clock, pass.step, pass.grips, last, impulse_.data(),
                                                      given_.data()});
       take();

@@ -245,8 +245,8 @@ class ContactSet {
                                         parts_.controls.dynamic, step, numbers()});
     if (!parts_.controls.dynamic) return;
     parts_.impulses.run(parts_.surfaces, parts_.grid.view(), ArrivingNodes<Real>{nodes(), predicts ? step : 0},
-                        nodes_.count, NodeInertia<Device>(parts_.device), parts_.cell.layer_mass,
-                        {nullptr, step, true, false});
+                        nodes_.count, NodeInertia<Device>(parts_.device),
+                        {nullptr, step, parts_.cell.layer_mass, true, false});
   }
   ContactNumbers numbers() {
     const Material<Real>& material = parts_.materials.list[0];
