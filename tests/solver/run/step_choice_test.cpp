@@ -85,6 +85,8 @@ TEST(StepChoice, takes_short_explicit_steps_on_ground_rough_for_the_flow) {
                    thick = choose_steps(slab_on_waves(20), chosen_at(0.01));
   EXPECT_EQ(thin.flow, Integrator::explicit_);
   EXPECT_EQ(thin.cfl, 0.5);
+  EXPECT_EQ(choose_steps(slab_on_waves(4), chosen_at(0.05)).cfl, 0.5) << "longer ones move a tenth of the deposit";
+  EXPECT_EQ(choose_steps(slab_on_waves(4), chosen_at(0.005)).cfl, 0.25);
   EXPECT_NE(thin.reasons[0].find("within a cell the ground bends by 0.0"), std::string::npos) << thin.reasons[0];
   EXPECT_EQ(thick.flow, Integrator::column_implicit);
   EXPECT_EQ(thick.cfl, 1);
