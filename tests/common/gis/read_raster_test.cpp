@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "common/error.hpp"
@@ -59,6 +61,22 @@ TEST_F(RasterFile, a_large_cog_has_overviews_and_passes_gdals_own_validator) {
   const auto info = test::output_of("gdalinfo '" + (scratch / "large.tif").string() + "'");
   EXPECT_NE(info.find("Overviews: 650x550, 325x275"), std::string::npos) << info;
   EXPECT_NE(info.find("Block=512x512"), std::string::npos) << info;
+}
+
+TEST_F(RasterFile, a_small_cog_is_one_tile_no_larger_than_it_needs_and_valid) {
+  TALUS_NEED_TOOL(TALUS_COG_VALIDATOR);
+  const auto info_of = [&](int columns, int rows) {
+    const Raster raster = random_raster({columns, rows, 0, 0, 20, epsg(32611)}, 4);
+    write_cog(scratch / "small.tif", raster, {"z", "m", {}});
+    test::expect_valid_cog(scratch / "small.tif");
+    EXPECT_TRUE(identical(read_raster(scratch / "small.tif"), raster));
+    return test::output_of("gdalinfo '" + (scratch / "small.tif").string() + "'");
+  };
+  for (const auto& [columns, rows, side] : {std::array{3, 2, 128}, {201, 201, 208}, {130, 500, 512}}) {
+    const std::string info = info_of(columns, rows);
+    EXPECT_NE(info.find(fmt::format("Block={0}x{0}", side)), std::string::npos) << info;
+    EXPECT_EQ(info.find("Overviews"), std::string::npos) << info;
+  }
 }
 
 TEST_F(RasterFile, local_coordinates_stay_local) {
