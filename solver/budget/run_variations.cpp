@@ -47,6 +47,9 @@ class Noting {
 
  private:
   static void take(BudgetRun& run, MemberRun&& made) {
+    if (made.result.volume_outflow > 0)
+      log_warning(fmt::format("{:.4g} m3 left the domain, and are missing from its maps. Take a larger domain",
+                              made.result.volume_outflow));
     run.state = BudgetState::done;
     run.accepted = std::move(made.accepted);
     run.result = made.result;
