@@ -58,9 +58,12 @@ TEST_P(SurfaceContactTest, block_slides_on_ground_between_the_nodes) {  // valid
     for (const Incline c :
          {Incline{30, 0, 20, 4}, Incline{30, 37, 20, 4}, Incline{45, 60, 25, 2}, Incline{20, 200, 5, 1}}) {
       if (integrator == Integrator::newmark && c.layers == 4) continue;  // minutes
+      // Columns of many layers, whose height does not bound the steps.
+      const double layer = integrator == Integrator::column_implicit && c.layers < 4 ? 0.25 : 1;
       const double down_x = std::cos(c.direction * degree), down_y = std::sin(c.direction * degree),
                    slope = std::tan(c.angle * degree);
-      Domain d = ground(60, 60, 1.0, 1.0, [&](double x, double y) { return 100 - slope * (x * down_x + y * down_y); });
+      Domain d =
+          ground(60, 60, 1.0, layer, [&](double x, double y) { return 100 - slope * (x * down_x + y * down_y); });
       const double x0 = std::floor(30 - 14 * down_x - 3), y0 = std::floor(30 - 14 * down_y - 3);
       fill(d, {x0, x0 + 6, y0, y0 + 6, 0, c.layers * 1.0});
       SolveOptions o = rigid(integrator);
