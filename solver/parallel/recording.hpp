@@ -108,7 +108,7 @@ class Recording<GpuDevice> {
   void repeat_alone(int times, const Body& body) {
     const bool measured = device_.profile().with_kernels();
     if (marked_ != measured) recorded_ = false;
-    for (int first = times <= 2 * plain_ ? times : plain_; !recorded_ && first > 0; --first, --times) body();
+    for (int first = times < 2 * plain_ ? times : plain_; !recorded_ && first > 0; --first, --times) body();
     if (times > 0 && measured) return repeat_measured(times, body);
     if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
