@@ -20,7 +20,7 @@ struct Mobility {
 
 /// The columns after their step, whose springs are alike in all directions.
 template <class Real>
-struct ColumnFactors {
+struct SolvedColumns {
   GridView<Real> grid;
   const int* active;
   const Clock* clock;
@@ -72,7 +72,7 @@ struct ColumnFactors {
 /// One thread: one column. In: shares of impulses on its nodes; out: the velocities that these give them [1/kg].
 template <class Real>
 struct YieldOfColumns {
-  ColumnFactors<Real> columns;
+  SolvedColumns<Real> columns;
   Real* shares;
   TALUS_HD void operator()(int c) const {
     if (columns.clock->halt != running) return;
@@ -83,7 +83,7 @@ struct YieldOfColumns {
 /// One thread: one column. It takes the impulses that its nodes were given into their velocities.
 template <class Real, class Nodes>
 struct TakeColumnImpulses {
-  ColumnFactors<Real> columns;
+  SolvedColumns<Real> columns;
   Nodes nodes;
   Vec3<Real>* given;
   TALUS_HD void operator()(int c) const {
@@ -102,7 +102,7 @@ class ColumnInertia {
   static constexpr bool of_single_nodes = false;  ///< see NodeInertia
 
   /// The constructor takes the columns of `blocks` active blocks, once they have been solved for.
-  ColumnInertia(const Device& device, const ColumnFactors<Real>& columns, int blocks)
+  ColumnInertia(const Device& device, const SolvedColumns<Real>& columns, int blocks)
       : device_(device), columns_(columns), count_(blocks * block_columns) {}
 
   /// The method makes velocities [1/kg] of the nodes' shares of impulses.
@@ -116,7 +116,7 @@ class ColumnInertia {
 
  private:
   Device device_;
-  ColumnFactors<Real> columns_;
+  SolvedColumns<Real> columns_;
   int count_;
 };
 

@@ -357,7 +357,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   }
 
   /// The columns once they have been solved for.
-  ColumnFactors<Real> factors() {
+  SolvedColumns<Real> factors() {
     return {.grid = grid_.view(),
             .active = grid_.active_list(),
             .clock = clock_.data(),

@@ -19,7 +19,7 @@ namespace talus {
 /// springs K between neighbouring layers: uniaxial ones across the bed, shear ones along it. Elimination goes down the
 /// column, so that the nodes at the bed meet it (T12) with the inertia of what lies on them, and what they get is
 /// passed on upwards. K acts on changes of velocity alone: momentum, free fall and rest are those of an explicit step.
-/// Mobilities and springs stay, for what the nodes are given later in the step (ColumnFactors).
+/// Mobilities and springs stay, for what the nodes are given later in the step (SolvedColumns).
 /// With `counts` the losses (T24) are counted.
 template <class Real, bool counts = false>
 struct SolveColumns {
