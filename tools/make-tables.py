@@ -101,8 +101,8 @@ def speed():
         times = [min((t for e, t in mine if e < bound), default=None) for bound in bounds]
         lines.append(f"| {name} | " + " | ".join("not reached" if t is None else f"{t:.2g} s" for t in times) +
                      f" | {min(e for e, _ in mine):.1f} % |")
-    commit = {r["commit"] for r in rows if r["commit"]}.pop()
-    return [*lines, "", "Frank Slide, 100 s, Young's modulus 1e9 Pa for all, double precision, one NVIDIA H200, commit "
+    commit, machine = next((r["commit"], r["machine"].split(",")[0]) for r in rows if r["commit"])
+    return [*lines, "", f"Frank Slide, 100 s, Young's modulus 1e9 Pa for all, double precision, one {machine}, commit "
             f"{commit[:7]}, {DAY}, by", "`make -C pipelines/benchmarks speed-against-error`. Error: share of the "
             "deposit that lies elsewhere than on the finest", "grid. All methods were run on cells of 40 m; all but "
             "the reference paper's scheme on cells of 20 m too."]

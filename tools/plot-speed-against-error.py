@@ -27,7 +27,7 @@ NAMES = {
     "newton": "implicit, Newton's iterations",
     "reference preset": "the reference paper's scheme, as we read it",
 }
-LINES = {"explicit": "0.8", "column-implicit": "1", "newton": "10"}  # the step, in CFL, of the line over the grids
+LINES = {"explicit": "0.8", "column-implicit": "1.5", "newton": "10"}  # the step, in CFL, of the line over the grids
 
 
 def read(source):

@@ -74,6 +74,11 @@ def automatic(accuracy):
     return Method("auto", f"{accuracy:g}", {"solve": {"integrator": "auto", "accuracy": accuracy}})
 
 
+def single(method):
+    """The same in single precision."""
+    return Method(method.name + " single", method.asked, merged(method.changes, {"solve": {"precision": "single"}}))
+
+
 def newton(steps):
     """Backward Euler with Newton's iterations to 1e-3; `steps` CFL steps long."""
     implicit = {"newmark_alpha": 0.5, "newmark_beta": 1.0, "newton_tolerance": 1e-3, "step_cfl": steps}
@@ -142,7 +147,7 @@ def runs(long):
                 continue
             for cfl in (0.1, 0.25, 0.5, 0.8) if coarsest else (0.25, 0.5, 0.8):
                 yield name, scene, explicit(cfl)
-            for cfl in (0.5, 1.0):
+            for cfl in (0.5, 1.0, 1.5):
                 yield name, scene, columns(cfl)
             for steps in (3, 10, 30) if coarsest else (10,):
                 yield name, scene, newton(steps)
@@ -151,8 +156,10 @@ def runs(long):
     for scene in STEPS:
         for method in (explicit(0.25), explicit(0.25, " again"), explicit(0.1), explicit(0.5), explicit(0.8)):
             yield "cost of steps", scene, method
-        for method in (columns(0.5), columns(0.8), columns(1.0), automatic(0.01)):
+        for method in (columns(0.5), columns(1.0), columns(1.5), automatic(0.01), automatic(0.02)):
             yield "cost of steps", scene, method
+        for method in (explicit(0.8), columns(1.5), automatic(0.01), automatic(0.02)):
+            yield "cost of steps", scene, single(method)
 
 
 def merged(base, changes):
@@ -191,7 +198,7 @@ def recipe_of(scene, method=None):
         recipe = merged(recipe, method.changes)
         if "cfl" not in method.changes["solve"]:
             recipe["solve"].pop("cfl", None)  # it belongs to the recipe's own integrator
-        if method.name == "auto" and recipe["solve"]["material"].get("stiffness") == "as-given":
+        if method.name.startswith("auto") and recipe["solve"]["material"].get("stiffness") == "as-given":
             del recipe["solve"]["material"]["stiffness"]  # it follows from accuracy
         steps = recipe["solve"].get("implicit", {}).pop("step_cfl", None)
         if steps:

@@ -153,4 +153,13 @@ TALUS_HD void advance_material(const Material<Real, Laws>& m, const Mat3<Real>& 
   });
 }
 
+/// This function takes a share of a point's stress away; what has opened stays open.
+template <class Real, class Laws>
+TALUS_HD void forget_stress(const Material<Real, Laws>& m, Real kept, MaterialState<Real>& s) {
+  s.elastic = s.elastic * kept;
+  const bool by_volume = visit_law<Laws>(m.model, [](auto law) { return decltype(law)::pressure_follows_volume; });
+  const Real pressed = s.log_volume - s.plastic_log_volume;
+  if (by_volume && pressed < Real(0)) s.log_volume = s.plastic_log_volume + kept * pressed;
+}
+
 }  // namespace talus

@@ -15,6 +15,13 @@ Hindrance beyond_columns(const SolveOptions& o) {
   return {};
 }
 
+double longest_by_columns(const SolveOptions& o) {
+  const bool tension = o.any_material([](const MaterialOptions& m) {
+    return !m.stiffness_is_free() || (m.model == MaterialModel::drucker_prager && m.tension_cutoff > 0);
+  });
+  return tension ? 1 : 1.5;
+}
+
 Hindrance law_beyond_newton(const SolveOptions& o) {
   Hindrance law;
   o.any_material([&](const MaterialOptions& m) {

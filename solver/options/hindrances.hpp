@@ -20,6 +20,10 @@ struct Hindrance {
 /// What is in the way of inertia implicit along columns.
 Hindrance beyond_columns(const SolveOptions& options);
 
+/// The longest column-implicit step that the materials bear, over the CFL step (T6d): 1 where one holds tension, for
+/// what a corner of it swings with is not in the springs along columns.
+double longest_by_columns(const SolveOptions& options);
+
 /// The first law of a material that Newton's iterations do not step.
 Hindrance law_beyond_newton(const SolveOptions& options);
 

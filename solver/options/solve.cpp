@@ -38,6 +38,9 @@ void need_columns(recipe::Visitor& v, const SolveOptions& o) {
   v.needs(by_columns || o.cfl <= most_explicit_cfl,
           {fmt::format("[solve] cfl = {:g} is too large for this integrator", o.cfl),
            "points that have a cell to themselves would be thrown off", "Take 0.8 at most"});
+  v.needs(!by_columns || o.cfl <= longest_by_columns(o),
+          {fmt::format("[solve] cfl = {:g} is too large for a material that holds tension", o.cfl),
+           "corners of a body that keeps its shape would be thrown off", "Take 1 at most"});
   const Hindrance beyond = by_columns ? beyond_columns(o) : Hindrance{};
   v.needs(!beyond, {"[solve] integrator = \"column-implicit\" does not go with " + beyond.key, beyond.reason,
                     "Leave it out, or take integrator = \"explicit\" or \"auto\""});

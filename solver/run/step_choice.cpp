@@ -20,7 +20,7 @@ namespace {
 // Shares of the CFL step that keep to an accuracy, over that accuracy, and their limits
 // (docs/decisions/0009-choice-of-integrator.md).
 constexpr double explicit_per_accuracy = 80, rough_per_accuracy = 50, columns_per_accuracy = 100;
-constexpr double most_explicit = 0.8, most_rough = 0.5, most_columns = 1, least_cfl = 0.1;
+constexpr double most_explicit = 0.8, most_rough = 0.5, least_cfl = 0.1;
 constexpr double roughest = 0.01;  // bend of the ground over the thickness up to which long steps keep to it
 constexpr double kept_on_rough_ground = 0.05;  // accuracy down to which steps keep to it beyond that
 
@@ -47,7 +47,7 @@ double crossing_rate(const Domain& domain, const SolveOptions& o, Integrator int
 
 Way way_of(const Domain& domain, const SolveOptions& o, Integrator integrator, const Pace& pace, bool rough) {
   const bool columns = abilities_of(integrator).solve_columns;
-  const double most = columns ? most_columns : rough ? most_rough : most_explicit;
+  const double most = columns ? longest_by_columns(o) : rough ? most_rough : most_explicit;
   const double per_accuracy = columns ? columns_per_accuracy : rough ? rough_per_accuracy : explicit_per_accuracy;
   return {integrator, o.accuracy ? std::clamp(per_accuracy * *o.accuracy, least_cfl, most) : o.cfl,
           crossing_rate(domain, o, integrator, pace)};

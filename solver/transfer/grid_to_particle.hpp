@@ -6,6 +6,7 @@
 #include "solver/grid/bicubic.hpp"
 #include "solver/material/material.hpp"
 #include "solver/state/clock.hpp"
+#include "solver/transfer/company.hpp"
 #include "solver/transfer/stencil.hpp"
 
 namespace talus {
@@ -45,12 +46,13 @@ struct GridToParticle {
 
   /// The sums over a point's nodes.
   struct Sums {
-    Vec3<Real> velocity;  ///< [m/s]
-    Mat3<Real> gradient;  ///< by reference coordinates, per cell
-    Real climb = 0;       ///< rate of zeta [m/s]
-    Vec3<Real> bend;      ///< gradient of the ground's slopes: xx, yy, twice xy, per cell
-    Mat3<Real> moment;    ///< of velocity about the point, in cells
-    Vec3<Real> change;    ///< of the velocity in the step, where points keep some of their own [m/s]
+    Vec3<Real> velocity;    ///< [m/s]
+    Mat3<Real> gradient;    ///< by reference coordinates, per cell
+    Real climb = 0;         ///< rate of zeta [m/s]
+    Vec3<Real> bend;        ///< gradient of the ground's slopes: xx, yy, twice xy, per cell
+    Mat3<Real> moment;      ///< of velocity about the point, in cells
+    Vec3<Real> change;      ///< of the velocity in the step, where points keep some of their own [m/s]
+    Company<Real> company;  ///< of other matter around the point, where columns are implicit
   };
 
   TALUS_HD void operator()(int p) const {
@@ -87,6 +89,7 @@ struct GridToParticle {
         }
         // Sums up the column, then weighs them once.
         Vec3<Real> mean{}, rise{}, lever{}, change{};
+        Real mass = 0;
         TALUS_UNROLL
         for (int c = 0; c < Shape::width; ++c) {
           const int n = s.node(column, c);
@@ -95,12 +98,14 @@ struct GridToParticle {
           mean += v * s.wz[c];
           rise += v * s.gz[c];
           if (affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
+          if (!bound_by_layers) mass += node.w * s.wz[c];
           if (changes) {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
           }
         }
         const Real w = s.wx[a] * s.wy[b];
+        if (!bound_by_layers) sums.company.add(mass, s.wx[a], s.wy[b]);
         sums.velocity += mean * w;
         sums.change += change * w;
         sums.climb += (mean.z - nx * mean.x - ny * mean.y) * w;
@@ -160,6 +165,11 @@ struct GridToParticle {
     const Material<Real, Laws> material = materials.of(points.material, points.plastic_shear, p);
     const MaterialState<Real> before = state;
     advance_material(material, g, dt, state);
+    const Real waves = wave_speed(material, state);
+    if (!bound_by_layers) {
+      const Real kept = share_kept_alone(sums.company.alone(s), waves * across);
+      if (kept < Real(1)) forget_stress(material, kept, state);
+    }
     if constexpr (budget) lose_to_flow(material, before, state, g, points.volume[p]);
     if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);
@@ -169,7 +179,7 @@ struct GridToParticle {
     if constexpr (part == Gather::deformation) {
       points.move_by(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]}, grid.walls);
     }
-    return wave_speed(material, state);
+    return waves;
   }
 
   /// The work of the stress, less what is kept as elastic energy.

@@ -248,7 +248,20 @@ TEST(SolveOptions, what_follows_from_accuracy_is_not_given_beside_it) {
 TEST(SolveOptions, steps_longer_than_lone_points_bear_are_for_columns) {
   EXPECT_EQ(faults("[solve]\ncfl=0.8"), "");
   EXPECT_NE(faults("[solve]\ncfl=0.9").find("[solve] cfl = 0.9 is too large"), std::string::npos);
-  EXPECT_EQ(faults("[solve]\ncfl=1.0\nintegrator=\"column-implicit\""), "");
+  EXPECT_EQ(faults("[solve]\ncfl=1.5\nintegrator=\"column-implicit\""), "");
+  EXPECT_NE(faults("[solve]\ncfl=1.6\nintegrator=\"column-implicit\""), "");
+}
+
+TEST(SolveOptions, longer_steps_by_columns_are_for_what_holds_no_tension) {
+  const auto said = [](const std::string& material) {
+    return faults("[solve]\ncfl=1.2\nintegrator=\"column-implicit\"\n" + material)
+               .find("[solve] cfl = 1.2 is too large for a material that holds tension") != std::string::npos;
+  };
+  EXPECT_FALSE(said("[solve.material]\ncohesion_Pa=1e4"));
+  EXPECT_FALSE(said("[solve.material]\nmodel=\"herschel-bulkley\""));
+  EXPECT_TRUE(said("[solve.material]\nmodel=\"hencky\""));
+  EXPECT_TRUE(said("[solve.material]\ncohesion_Pa=1e4\ntension_cutoff_Pa=1e3"));
+  EXPECT_TRUE(said("[[solve.part]]\nrelease=\"block\"\nmodel=\"neo-hookean\""));
 }
 
 TEST(SolveOptions, what_goes_together_is_taken) {

@@ -80,6 +80,44 @@ TEST_P(ColumnImplicit, slide_as_coulomb_says_whatever_the_layers) {
   }
 }
 
+TEST_P(ColumnImplicit, slide_as_coulomb_says_in_the_longest_steps) {
+  const LayeredBlock c{30, 20, 0.25};
+  constexpr double time = 1.5;
+  const double expected = 0.5 * c.acceleration() * time * time * std::cos(c.angle * to_radians);
+  SolveOptions o = c.options();
+  o.material.model = MaterialModel::drucker_prager;
+  o.material.friction_angle = 40;
+  o.material.cohesion = 1e5;
+  const std::int64_t usual = ran(c, o, time).steps;
+  for (const double cfl : {1.0, 1.5}) {
+    o.cfl = cfl;
+    const Ran r = ran(c, o, time);
+    std::printf("  %g CFL: error %.3f %%, %lld steps\n", cfl, 100 * (r.way / expected - 1),
+                static_cast<long long>(r.steps));
+    EXPECT_LT(std::abs(r.way / expected - 1), 0.01);  // validation.md B1
+    EXPECT_LT(static_cast<double>(r.steps), 0.55 / cfl * static_cast<double>(usual));
+  }
+}
+
+TEST_P(ColumnImplicit, throw_no_point_that_lands_by_itself) {
+  // Lone points fall onto a steep slope over layers of a tenth of a cell: nothing may go faster than weight makes it.
+  Domain d = ground(60, 20, 1.0, 0.1, [](double x, double) { return 60 - x; });
+  for (int n = 0; n < 8; ++n) {
+    const double x = 4 + 3.37 * n, y = 4 + 1.61 * n;
+    fill(d, {x, x + 0.5, y, y + 0.5, 1.0 + 0.3 * n, 1.05 + 0.3 * n});
+  }
+  SolveOptions o = LayeredBlock{45, 20, 0.1}.options();
+  o.material.model = MaterialModel::drucker_prager;
+  o.cfl = 1.5;
+  const Scene scene = make_scene(d, o);
+  const auto solver = make_solver(scene, o, GetParam());
+  for (int n = 1; n <= 30; ++n) {
+    run_to(*solver, 0.1 * n);
+    const double fallen = 4 + 0.5 * 9.81 * n * n * 0.01;  // no further down than in free fall
+    EXPECT_LT(positive_from_bits(solver->clock().fastest_bits), 1.05 * std::sqrt(2 * 9.81 * fallen));
+  }
+}
+
 TEST_P(ColumnImplicit, rest_where_friction_holds) {
   const LayeredBlock c{25, 30, 0.25};
   const Ran shaken = ran(c, c.options(), 1), later = ran(c, c.options(), 4);

@@ -98,6 +98,20 @@ TEST(Clock, foretells_the_length_of_the_next_step) {
   EXPECT_EQ(clock.step_size, foretold);
 }
 
+TEST(Clock, makes_even_steps_up_to_an_event) {
+  Clock clock = stepping(0.3);
+  clock.next_event = 1;
+  for (int n = 0; n < 4; ++n) {
+    clock.begin_step();
+    EXPECT_NEAR(clock.step_size, 0.25, 1e-15);
+    atomic_max_positive(&clock.rate_bits, 1.0F);
+  }
+  EXPECT_EQ(clock.time, 1);
+  clock.next_event = 1.6;  // two of them fit: rounding makes no third
+  clock.begin_step();
+  EXPECT_NEAR(clock.step_size, 0.3, 1e-15);
+}
+
 TEST(Clock, knows_the_fastest_point_of_all_steps) {
   Clock clock = stepping(0.01);
   for (const float speed : {3.0F, 7.0F, 5.0F}) {
