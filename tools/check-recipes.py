@@ -40,6 +40,7 @@ import sys
 import time
 
 STAGES = ("preprocess", "solve", "postprocess")
+MANY_POINTS = 500_000  # that talus-preprocess may take longer than --time to make and write: 6 microseconds for each
 # Keys that name files, places or other items of a recipe: a random text says nothing about numbers.
 LEFT_OUT = {"end_time_s", "accept", "working_crs", "classes_m", "animation", "stiffness_check"}
 # Tables that nothing can be said in without a file.
@@ -289,6 +290,12 @@ def announced_work(said):
     return steps * (int(points.group(1)) if points else 0), steps
 
 
+def announced_points(said):
+    """The material points that talus-preprocess spoke of before it made them; 0: of none."""
+    found = re.search(r"material points: ([\d,]+)", said)
+    return int(found.group(1).replace(",", "")) if found else 0
+
+
 def judged(args, folder, changes):
     """How a recipe ends: (way, words)."""
     out = folder / "out"
@@ -298,7 +305,7 @@ def judged(args, folder, changes):
         code, said = run([str(word) for word in command], args.time, folder / f"{stage}.log")
         if code == "stopped":
             work, steps = announced_work(said)
-            if stage == "preprocess" and "to make so many takes long" in said:
+            if stage == "preprocess" and ("to make so many takes long" in said or announced_points(said) > MANY_POINTS):
                 return "stopped", "many material points were announced"
             text = (folder / "recipe.toml").read_text()
             implicit = "integrator" in text or "factor_of_safety = true" in text
