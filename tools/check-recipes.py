@@ -40,7 +40,7 @@ import sys
 import time
 
 STAGES = ("preprocess", "solve", "postprocess")
-MANY_POINTS = 500_000  # that talus-preprocess may take longer than --time to make and write: 6 microseconds for each
+SECONDS_A_POINT = 10e-6  # of processor time that talus-preprocess may take to make and write a point it announced
 # Keys that name files, places or other items of a recipe: a random text says nothing about numbers.
 LEFT_OUT = {"end_time_s", "accept", "working_crs", "classes_m", "animation", "stiffness_check"}
 # Tables that nothing can be said in without a file.
@@ -204,6 +204,9 @@ def run(command, limit, log):
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=stream, start_new_session=True)
     if wait(process, limit):
         return process.returncode, log.read_text(errors="replace")
+    longer = SECONDS_A_POINT * announced_points(log.read_text(errors="replace")) - limit
+    if longer > 0 and wait(process, longer):
+        return process.returncode, log.read_text(errors="replace")
     process.send_signal(signal.SIGTERM)
     # A run saves its state where points are sorted, 32 steps from there or 8 of many points: a microsecond for a
     # point and step.
@@ -291,9 +294,10 @@ def announced_work(said):
 
 
 def announced_points(said):
-    """The material points that talus-preprocess spoke of before it made them; 0: of none."""
+    """The material points that talus-preprocess spoke of before it made them; 0: of none, or of so many that it warned
+    of the time."""
     found = re.search(r"material points: ([\d,]+)", said)
-    return int(found.group(1).replace(",", "")) if found else 0
+    return int(found.group(1).replace(",", "")) if found and "to make so many takes long" not in said else 0
 
 
 def judged(args, folder, changes):
@@ -305,7 +309,7 @@ def judged(args, folder, changes):
         code, said = run([str(word) for word in command], args.time, folder / f"{stage}.log")
         if code == "stopped":
             work, steps = announced_work(said)
-            if stage == "preprocess" and ("to make so many takes long" in said or announced_points(said) > MANY_POINTS):
+            if stage == "preprocess" and "to make so many takes long" in said:
                 return "stopped", "many material points were announced"
             text = (folder / "recipe.toml").read_text()
             implicit = "integrator" in text or "factor_of_safety = true" in text

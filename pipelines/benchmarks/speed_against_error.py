@@ -27,7 +27,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 COLUMNS = [
     "set", "scene", "commit", "machine", "method", "asked", "spacing_m", "layer_height_m", "youngs_modulus_Pa",
     "points", "steps", "newton_iterations", "linear_iterations", "steps_cut", "step_over_cfl_mean", "loop_s",
-    "process_s", "memory_bytes", "elsewhere_than_finest_percent", "elsewhere_than_explicit_percent",
+    "process_s", "memory_bytes", "elsewhere_than_finest_percent", "elsewhere_than_explicit_percent", "creep_m_s",
 ]  # fmt: skip
 
 
@@ -137,6 +137,26 @@ STEPS = [
 ]  # fmt: skip
 
 
+# What lies still: a slab of 60 x 30 x 2 m on 20 degrees over a bed of 25, brought to equilibrium, for ten minutes.
+SLAB = Scene("slab", "tests/validation/B1/recipe.toml", 1, 0.5, 1e8, {
+    "preprocess": {
+        "laboratory": {"columns": 80, "rows": 50, "slope_x": -math.tan(math.radians(20))},
+        "box": [{"name": "slab", "west_m": 10.0, "east_m": 70.0, "south_m": 10.0, "north_m": 40.0, "bottom_m": 0.0,
+                 "top_m": 2.0}],
+    },
+    "solve": {
+        "end_time_s": 600.0, "history_interval_s": 10.0, "frame_interval_s": 600.0, "point_frames": False,
+        "gravity_loading_steps": 10,
+        "material": {"model": "drucker-prager", "friction_angle_deg": 35.0},
+        "base": {"friction_angle_deg": 25.0},
+    },
+})  # fmt: skip
+STILL = [
+    Method("newmark", "2 s", {"solve": {"integrator": "newmark", "implicit": {"step_s": 2.0}}}),
+    Method("auto", "0.01", {"solve": {"integrator": "auto", "accuracy": 0.01}}),
+]
+
+
 def runs(long):
     """(set, scene, method) of every run."""
     for name, scenes in PICTURE.items():
@@ -160,6 +180,8 @@ def runs(long):
             yield "cost of steps", scene, method
         for method in (explicit(0.8), columns(1.5), automatic(0.01), automatic(0.02)):
             yield "cost of steps", scene, single(method)
+    for method in STILL:
+        yield "at rest", SLAB, method
 
 
 def merged(base, changes):
@@ -328,6 +350,14 @@ def cost_of(home, deposit):
     }
 
 
+def creep_of(history):
+    """How fast the centre of what lies on SLAB's slope sinks along it in the second half of the run [m/s]."""
+    time, fall = history["time_s"], history["potential_J"]
+    half = len(time) // 2
+    weight = 60 * 30 * 2 * 2000 * 9.81  # [N]
+    return abs(fall[half] - fall[-1]) / (weight * math.sin(math.radians(20)) * (time[-1] - time[half]))
+
+
 def row_of(arguments, name, scene, method, finest, plain, coarsest_cell):
     home = folder_of(arguments.out, scene, method)
     deposit = deposit_of(home)
@@ -344,6 +374,8 @@ def row_of(arguments, name, scene, method, finest, plain, coarsest_cell):
         "youngs_modulus_Pa": f"{modulus:.3g}",
         "step_over_cfl_mean": f"{over[over > 0].mean():.3g}" if (over > 0).any() else "",
     }
+    if scene is SLAB:
+        row["creep_m_s"] = f"{creep_of(deposit.history):.1e}"
     if finest is not None:
         row["elsewhere_than_finest_percent"] = f"{deposit.elsewhere(finest, coarsest_cell):.2f}"
     if plain is not None:

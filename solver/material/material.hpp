@@ -32,6 +32,16 @@ struct Material : Elasticity<Real>, NumbersOfLaws<Real, Laws> {
   TALUS_HD bool keeps_strain() const {
     return visit_law<Laws>(model, [](auto law) { return decltype(law)::keeps_strain; });
   }
+  /// Whether a point may hang on the one above it: in elastic solids, and in sand with a tension cut-off.
+  TALUS_HD bool holds_tension() const {
+    return with_law([](auto law, const auto& numbers) {
+      if constexpr (requires { numbers.tension; }) {
+        return numbers.tension > Real(0);
+      } else {
+        return !decltype(law)::stiffness_is_free;
+      }
+    });
+  }
 
   /// The numbers of a law, which count while that is the material's.
   template <class Law>

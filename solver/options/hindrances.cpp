@@ -16,10 +16,7 @@ Hindrance beyond_columns(const SolveOptions& o) {
 }
 
 double longest_by_columns(const SolveOptions& o) {
-  const bool tension = o.any_material([](const MaterialOptions& m) {
-    return !m.stiffness_is_free() || (m.model == MaterialModel::drucker_prager && m.tension_cutoff > 0);
-  });
-  return tension ? 1 : 1.5;
+  return o.any_material([](const MaterialOptions& m) { return m.holds_tension(); }) ? 1 : 1.5;
 }
 
 Hindrance law_beyond_newton(const SolveOptions& o) {

@@ -33,6 +33,15 @@ bool MaterialOptions::steps_implicitly() const {
 bool MaterialOptions::stiffness_is_free() const {
   return with_law([](auto law, const auto&) { return law.stiffness_is_free; });
 }
+bool MaterialOptions::holds_tension() const {
+  return with_law([](auto law, const auto& options) {
+    if constexpr (requires { options.tension_cutoff; }) {
+      return options.tension_cutoff > 0;
+    } else {
+      return !law.stiffness_is_free;
+    }
+  });
+}
 
 std::string MaterialOptions::name() const {
   return with_law([](auto law, const auto&) { return std::string(law.name); });

@@ -45,6 +45,8 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   bool steps_implicitly() const;
   /// Whether what the material does leaves its stiffness free, as that of a flow does.
   bool stiffness_is_free() const;
+  /// Whether one part of the mass may hang on another: in elastic solids, and in sand with a tension cut-off.
+  bool holds_tension() const;
   /// The name of the law in recipes.
   std::string name() const;
   /// Whether the volume change alone decides the pressure, as B-bar needs.

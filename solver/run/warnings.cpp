@@ -139,6 +139,37 @@ void warn_of(const MaterialOptions& material, const std::string& table, double b
       std::atan(recommended_ratio * bed) * degrees, recommended_ratio));
 }
 
+/// The share of the release in cells with nothing beside them, neither along x nor along y [-].
+double released_alone(const Domain& domain) {
+  const Raster& release = domain.release_thickness;
+  const auto filled = [&](int i, int j) {
+    return i >= 0 && j >= 0 && i < release.grid.columns && j < release.grid.rows && release.at(i, j) > 0;
+  };
+  double alone = 0, all = 0;
+  for (int j = 0; j < release.grid.rows; ++j) {
+    for (int i = 0; i < release.grid.columns; ++i) {
+      if (!filled(i, j)) continue;
+      all += release.at(i, j);
+      if (!filled(i - 1, j) && !filled(i + 1, j) && !filled(i, j - 1) && !filled(i, j + 1)) alone += release.at(i, j);
+    }
+  }
+  return all > 0 ? alone / all : 0;
+}
+
+/// Of matter that column-implicit steps let forget its stress (T6d).
+void warn_of_lone_columns(const Domain& domain, const SolveOptions& o, std::vector<std::string>& lines) {
+  constexpr double said_from = 0.01, nothing_forgotten = 0.5;
+  if (o.integrator != Integrator::column_implicit || o.shape == ShapeKind::linear || o.cfl <= nothing_forgotten) return;
+  const auto forgets = [](const MaterialOptions& m) { return !m.holds_tension(); };
+  const double share = released_alone(domain);
+  if (share < said_from || !o.any_material(forgets)) return;
+  lines.push_back(
+      fmt::format("{:.2g} % of the release are columns one cell wide with nothing beside them. With cfl = {:g}, above "
+                  "{:g}, column-implicit steps let such columns forget part of their stress, and they do not stand "
+                  "without walls. Take cells of half the width, or [solve] cfl = {:g}",
+                  100 * share, o.cfl, nothing_forgotten, nothing_forgotten));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Domain& domain, const SolveOptions& options) {
@@ -147,6 +178,7 @@ std::vector<std::string> warnings(const Domain& domain, const SolveOptions& opti
   warn_of(options.material, "[solve.material]", bed, depth, lines);
   for (const PartOptions& part : options.parts)
     warn_of(part.material, fmt::format("[[solve.part]] \"{}\"", part.release), bed, depth, lines);
+  warn_of_lone_columns(domain, options, lines);
   for (const std::string& line : inflow_warnings(domain, options)) lines.push_back(line);
   for (const std::string& line : shaking_warnings(read_shaking(options.shaking), options)) lines.push_back(line);
   return lines;

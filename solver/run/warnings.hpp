@@ -12,7 +12,8 @@
 namespace talus::solver {
 
 /// The warnings of a scene, a sentence or two each: a mass that gives way inside before it slides on its bed, a
-/// friction angle whose cone would carry tension, and grains that are lighter than the mass they make.
+/// friction angle whose cone would carry tension, grains that are lighter than the mass they make, and columns one cell
+/// wide in steps in which they forget their stress.
 std::vector<std::string> warnings(const Domain& domain, const SolveOptions& options);
 
 /// This function says what talus-preprocess warned of, which stands in the domain: also where a run is only planned or

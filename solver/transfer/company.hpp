@@ -36,12 +36,13 @@ struct Company {
 };
 
 /// The share of its stress that a point keeps in a step in which waves cross `crossed` of a cell (T6d): below 1 from
-/// 3/4 alone on. A lone point has (omega dt)^2 <= 37 crossed^2, on slopes up to 60 degrees and in layers down to a
-/// sixteenth of a cell, and one that keeps a share s of its stress is stable up to 2 + 2 / s.
+/// 3/4 alone on, in steps beyond 0.5 CFL. A lone point has (omega dt)^2 <= 32 crossed^2, on slopes up to 45 degrees in
+/// layers down to a sixteenth of a cell and up to 60 degrees in layers down to a quarter, and one that keeps a share s
+/// of its stress is stable up to 2 + 2 / s.
 template <class Real>
 TALUS_HD Real share_kept_alone(Real alone, Real crossed) {
   const Real lonely = alone > Real(0.95) ? Real(1) : Real(5) * (alone - Real(0.75));
-  const Real square = Real(37) * crossed * crossed * lonely;
+  const Real square = Real(32) * crossed * crossed * lonely;
   return square > Real(4) ? Real(2) / (square - Real(2)) : Real(1);
 }
 

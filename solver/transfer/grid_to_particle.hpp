@@ -166,7 +166,7 @@ struct GridToParticle {
     const MaterialState<Real> before = state;
     advance_material(material, g, dt, state);
     const Real waves = wave_speed(material, state);
-    if (!bound_by_layers) {
+    if (!bound_by_layers && !material.holds_tension()) {
       const Real kept = share_kept_alone(sums.company.alone(s), waves * across);
       if (kept < Real(1)) forget_stress(material, kept, state);
     }

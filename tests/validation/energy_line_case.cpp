@@ -91,19 +91,20 @@ void energy_line(Bench& bench) {
                                     : bench.coarse() ? std::vector<double>{40}
                                                      : std::vector<double>{20};
   for (const Terrain& terrain : terrains) {
-    for (const char* mapping : {"terrain-following", "cartesian"}) {
-      if (!bench.complete() && (terrain.line.kind != GroundLine::parabola || mapping[0] == 'c')) continue;
+    for (const Way& how : ways) {
+      if (!bench.complete() && (terrain.line.kind != GroundLine::parabola || &how != &ways[0])) continue;
       for (const double cell : cells) {
-        Series line{fmt::format("{}, {}, cells of {:g} m", terrain.name, mapping, cell), {}, {}, colour++};
+        Series line{fmt::format("{}, {}, cells of {:g} m", terrain.name, how.name, cell), {}, {}, colour++};
         line.marks = true;
         double eastwards = nothing;
         for (const double angle : {0.0, 120.0, 225.0}) {
           const Facing facing{angle};
           const Outcome o = bench.run(
-              fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, mapping, cell, angle),
+              fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, how.name, cell, angle),
               lay_out(bench, terrain, facing, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
                                                                 {"preprocess.grid.layer_height_m", 0.25 * cell},
-                                                                {"solve.mapping", words(mapping)}});
+                                                                {"solve.mapping", words(how.mapping)},
+                                                                {"solve.integrator", words(how.integrator)}});
           double way = nothing, aside = nothing, fall = nothing, expected = terrain.line.reach(first, mu) - first;
           if (o.ok()) {
             const Place start = place_of(o.first(), facing), end = place_of(o.last(), facing);

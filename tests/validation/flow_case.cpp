@@ -34,16 +34,6 @@ Norms norms(const std::vector<double>& computed, const std::vector<double>& exac
   return {std::sqrt(square / size), most / largest};
 }
 
-/// A grid, and how steps are taken on it.
-struct Way {
-  const char* name;
-  const char* mapping;
-  const char* integrator;
-};
-constexpr Way ways[] = {{"terrain-following", "terrain-following", "explicit"},
-                        {"cartesian", "cartesian", "explicit"},
-                        {"terrain-following, column-implicit", "terrain-following", "column-implicit"}};
-
 /// Layers over the thickness; cells are four layers wide.
 std::vector<int> layer_counts(const Bench& bench) {
   if (bench.coarse()) return {2};

@@ -11,6 +11,16 @@
 
 namespace talus::validation {
 
+/// A grid, and how steps are taken on it.
+struct Way {
+  const char* name;
+  const char* mapping;
+  const char* integrator;
+};
+inline constexpr Way ways[] = {{"terrain-following", "terrain-following", "explicit"},
+                               {"cartesian", "cartesian", "explicit"},
+                               {"terrain-following, column-implicit", "terrain-following", "column-implicit"}};
+
 /// The mean of value(x, y) over 8 x 8 places of every cell.
 template <class Value>
 Raster cell_means(const MapGrid& grid, Value value) {

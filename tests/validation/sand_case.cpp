@@ -77,6 +77,21 @@ Series level_line(const std::string& name, const std::vector<double>& h, double 
   return {name, {h.back(), h.front()}, {value, value}, colour};
 }
 
+/// Functions and steps.
+struct Stepping {
+  const char* name;
+  const char* shape;
+  const char* integrator;
+  const char* picture;  ///< of its finest cells
+};
+std::vector<Stepping> steppings(const Bench& bench) {
+  std::vector<Stepping> list{{"quadratic", "quadratic", "explicit", "A3-outlines-quadratic"},
+                             {"linear", "linear", "explicit", "A3-outlines-linear"}};
+  if (bench.complete())
+    list.push_back({"quadratic, column-implicit", "quadratic", "column-implicit", "A3-outlines-by-columns"});
+  return list;
+}
+
 void refinement(Bench& bench, const std::vector<int>& levels) {
   Chart chart;
   chart.title = "A3: run-out over cell size, 27 points per cell";
@@ -84,20 +99,21 @@ void refinement(Bench& bench, const std::vector<int>& levels) {
   chart.y_label = "(d end − d start) / d start";
   int colour = 1;
   std::vector<double> h;
-  for (const char* shape : {"quadratic", "linear"}) {
-    Series line{shape, {}, {}, colour++};
+  for (const Stepping& stepping : steppings(bench)) {
+    Series line{stepping.name, {}, {}, colour++};
     line.marks = true;
     for (const int level : levels) {
       Sand s;
       s.h = 0.09 / (1 << level);
       s.per_cell = 3;  // with two, points of the stretched sand lie further apart than cells, and pack too densely
       const Collapse c =
-          collapse(bench, fmt::format("{}, h = 0.09 / {}", shape, 1 << level), s, {{"solve.shape", words(shape)}});
+          collapse(bench, fmt::format("{}, h = 0.09 / {}", stepping.name, 1 << level), s,
+                   {{"solve.shape", words(stepping.shape)}, {"solve.integrator", words(stepping.integrator)}});
       line.x.push_back(s.h);
       line.y.push_back(c.front / s.width - 1);
       if (level == levels.back() && c.outcome.ok()) {
-        bench.picture(fmt::format("A3-outlines-{}", shape),
-                      outlines(c.outcome, s, fmt::format("A3: sand column, {} functions, h = {:g} m", shape, s.h)));
+        bench.picture(stepping.picture,
+                      outlines(c.outcome, s, fmt::format("A3: sand column, {}, h = {:g} m", stepping.name, s.h)));
       }
     }
     h = line.x;

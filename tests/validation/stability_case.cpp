@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// C1: the sand column of A3 in steps of 1 to 30 times the CFL step, against explicit steps on the same grid.
+// C1: the sand column of A3 in steps by columns and in Newmark's of 1 to 30 times the CFL step, against explicit steps
+// on the same grid.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -41,7 +42,7 @@ class ShortSteps {
   ShortSteps(Bench& bench, const Sand& sand)
       : bench_(bench),
         sand_(sand),
-        reference_(explicit_run(bench.coarse() ? 0.25 : 0.1)),
+        reference_(run_at("explicit", bench.coarse() ? 0.25 : 0.1)),
         centre_(centre_of(reference_)),
         reach_(reach_of(reference_)) {
     bench_.note(reference_, "run-out [m]", end_of(reference_, sand_));
@@ -53,8 +54,9 @@ class ShortSteps {
   Outcome run(const std::string& name, const Overrides& more) const {
     return bench_.run(name + grid(), overrides_of(sand_) + more);
   }
-  Outcome explicit_run(double cfl) const {
-    return run(fmt::format("explicit, {:g} CFL", cfl), {{"solve.integrator", words("explicit")}, {"solve.cfl", cfl}});
+  Outcome run_at(const char* integrator, double cfl) const {
+    return run(fmt::format("{}, {:g} CFL", integrator, cfl),
+               {{"solve.integrator", words(integrator)}, {"solve.cfl", cfl}});
   }
   /// Adds the rows; returns how far the centre of mass is off [%].
   double judge(const Outcome& o, double tolerance) const {
@@ -96,13 +98,14 @@ Series newmark_line(const ShortSteps& against, const TangentScheme& scheme, cons
   return line;
 }
 
-Series explicit_line(const ShortSteps& against) {
-  const bool coarse = against.bench().coarse();
-  Series line{"explicit", {coarse ? 0.25 : 0.1}, {0}, 0};
+/// Steps of these shares of the CFL step.
+Series cfl_line(const ShortSteps& against, const char* integrator, const std::vector<double>& lengths, double tolerance,
+                int colour) {
+  Series line{integrator, {}, {}, colour};
   line.marks = true;
-  for (const double cfl : coarse ? std::vector<double>{0.5} : std::vector<double>{0.25, 0.5}) {
+  for (const double cfl : lengths) {
     line.x.push_back(cfl);
-    line.y.push_back(against.judge(against.explicit_run(cfl), 0.02));
+    line.y.push_back(against.judge(against.run_at(integrator, cfl), tolerance));
   }
   return line;
 }
@@ -118,7 +121,11 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
   int colour = 1;
   for (const TangentScheme& scheme : {TangentScheme{"frozen-yield", "pcg"}, {"exact", "bicgstab"}})
     chart.series.push_back(newmark_line(against, scheme, lengths, colour++));
-  chart.series.push_back(explicit_line(against));
+  const bool coarse = bench.coarse();
+  chart.series.push_back(
+      cfl_line(against, "explicit", coarse ? std::vector<double>{0.5} : std::vector<double>{0.25, 0.5}, 0.02, 0));
+  chart.series.push_back(cfl_line(against, "column-implicit",
+                                  coarse ? std::vector<double>{1.5} : std::vector<double>{0.5, 1, 1.5}, 0.03, colour));
   bench.picture(fmt::format("C1-centre-{:g}", s.h), png_of(chart));
 }
 

@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long a column-implicit step may be: the highest frequency of the linear scheme (T6a, T6b) in a dense mass, by
-// Fourier analysis, and of a lone point. Quadratic splines, Poisson's ratio 0.25, and so a shear modulus of M' / 3.
+// How long a column-implicit step may be: the highest frequency of the linear scheme (T6a, T6b) in a dense mass and in
+// a sheet of few points across, by Fourier analysis, and of a lone point. Quadratic splines, Poisson's ratio 0.25, and
+// so a shear modulus of M' / 3.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <utility>
 #include <vector>
 
 namespace talus::solver::testing {
@@ -152,23 +155,119 @@ struct LonePoint {
   }
 };
 
+/// A sheet without end, of two by two points a cell in plan and `across` through it, half a layer apart.
+struct Sheet {
+  const Ground& ground;
+  int across;
+  double bottom;  ///< above a node [layers]
+  double crossed;
+
+  int nodes() const { return static_cast<int>(std::lround(bottom + 0.5 * across)) + 3; }
+
+  /// The node below a point and the point's place off the one in the middle of its three.
+  static std::pair<int, double> at(double height) {
+    const int middle = static_cast<int>(std::lround(height));
+    return {middle - 1, height - middle};
+  }
+  double height(int n) const { return bottom + 0.5 * n + 1; }  // one node of the column is below the ground
+
+  /// The inertia of a column, three by three numbers a node.
+  Eigen::MatrixXd inertia() const {
+    Eigen::MatrixXd m = Eigen::MatrixXd::Identity(3 * nodes(), 3 * nodes()) * 1e-12;
+    const double share = kappa * crossed * crossed;
+    for (int n = 0; n < across; ++n) {
+      const auto [first, off] = at(height(n));
+      const std::array<double, 3> w = weights(off), g = slopes(off);
+      for (int c = 0; c < 3; ++c) m.block<3, 3>(3 * (first + c), 3 * (first + c)).diagonal().array() += w.at(c);
+      for (int c = 0; c < 2; ++c) {
+        const Eigen::Matrix3d spring = (c == 0 ? -g[0] : g[2]) * share * ground.springs();
+        const int low = 3 * (first + c), high = low + 3;
+        m.block<3, 3>(low, low) += spring;
+        m.block<3, 3>(high, high) += spring;
+        m.block<3, 3>(low, high) -= spring;
+        m.block<3, 3>(high, low) -= spring;
+      }
+    }
+    return m;
+  }
+  /// The strains of a cell's points by the velocities of a column, which its neighbours have too but for a phase.
+  Eigen::MatrixXcd strains(double angle_x, double angle_y) const {
+    using Complex = std::complex<double>;
+    Eigen::MatrixXcd all = Eigen::MatrixXcd::Zero(24 * across, 3 * nodes());
+    int row = 0;
+    for (const double x : {-0.25, 0.25}) {
+      for (const double y : {-0.25, 0.25}) {
+        Complex sum_x = 0, sum_y = 0, slope_x = 0, slope_y = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const Complex px = std::polar(1.0, angle_x * static_cast<double>(a)),
+                        py = std::polar(1.0, angle_y * static_cast<double>(a));
+          sum_x += weights(x).at(a) * px, slope_x += slopes(x).at(a) * px;
+          sum_y += weights(y).at(a) * py, slope_y += slopes(y).at(a) * py;
+        }
+        for (int n = 0; n < across; ++n, row += 6) {
+          const auto [first, off] = at(height(n));
+          for (int c = 0; c < 3; ++c) {
+            const double w = weights(off).at(c), g = slopes(off).at(c) / ground.layer;
+            const Eigen::Vector3cd s =
+                ground.to_map() * Eigen::Vector3cd(slope_x * sum_y * w, sum_x * slope_y * w, sum_x * sum_y * g);
+            all.block<6, 3>(row, 3 * (first + c)) << s.x(), 0, 0, 0, s.y(), 0, 0, 0, s.z(), s.y(), s.x(), 0, 0, s.z(),
+                s.y(), s.z(), 0, s.x();
+          }
+        }
+      }
+    }
+    return all;
+  }
+  /// The largest of (omega dt)^2.
+  double square() const {
+    const Eigen::MatrixXd inertias = 4 * inertia();  // of four points at each height
+    Eigen::MatrixXd moduli = Eigen::MatrixXd::Zero(24 * across, 24 * across);
+    for (int n = 0; n < 4 * across; ++n) moduli.block<6, 6>(6 * n, 6 * n) = elasticity();
+    double most = 0;
+    for (int i = 0; i <= 4; ++i) {
+      for (int j = -3; j <= 4; ++j) {
+        const Eigen::MatrixXcd b = strains(i * M_PI / 4, j * M_PI / 4), stiffness = b.adjoint() * moduli * b;
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXcd> modes(
+            stiffness, inertias.cast<std::complex<double>>(), Eigen::EigenvaluesOnly);
+        most = std::max(most, modes.eigenvalues().maxCoeff());
+      }
+    }
+    return crossed * crossed * most;
+  }
+};
+
+TEST(StepsByColumns, are_stable_in_sheets_of_half_a_layer_and_more) {
+  for (const Ground& ground : grounds()) {
+    for (const int across : {1, 2, 4, 8}) {
+      for (const double bottom : {0.0, 0.3}) {
+        EXPECT_LT((Sheet{ground, across, bottom, 1.8 / M_SQRT2}.square()), 4)
+            << across << " points in layers of " << ground.layer << ", steepness " << ground.steep();
+      }
+    }
+  }
+  EXPECT_GT((Sheet{{0, 0, 1}, 2, 0.0, 2.5 / M_SQRT2}.square()), 4) << "on level ground from 2.4 on they are not";
+}
+
 TEST(StepsByColumns, swing_lone_points_no_faster_than_their_stress_is_forgotten_for) {
   // The square falls with the length of the step: springs are inertia. The one that matters is at its bound of 4.
-  double largest = 0;
+  double largest = 0, steepest = 0;
   for (const Ground& ground : grounds()) {
+    const bool steep_and_thin = ground.steep() > 3 && ground.layer < 0.2;  // 60 degrees, a sixteenth
     for (const double x : {-0.49, -0.2, 0.1, 0.49}) {
       for (const double y : {0.0, 0.3, 0.49}) {
         for (const double z : {-0.49, -0.1, 0.3}) {
           double crossed = 0.3;
           while (crossed < 0.75 && LonePoint(ground, {x, y, z}, crossed).square() * crossed * crossed < 4)
             crossed += 0.02;
-          largest = std::max(largest, 4 / (crossed * crossed));
+          double& most = steep_and_thin ? steepest : largest;
+          most = std::max(most, 4 / (crossed * crossed));
         }
       }
     }
   }
-  EXPECT_LT(largest, 37);
-  EXPECT_GT(largest, 25) << "the bound that share_kept_alone() goes by";
+  EXPECT_LT(largest, 32) << "the bound that share_kept_alone() goes by";
+  EXPECT_GT(largest, 25);
+  EXPECT_LT(steepest, 37) << "0.47 CFL";
 }
 
 }  // namespace

@@ -280,6 +280,26 @@ TEST(DruckerPrager, opened_grain_must_close_before_it_carries_load) {
   EXPECT_GT(pressure_of(kirchhoff_stress(m, s)), 0);
 }
 
+TEST(Materials, that_hold_tension_are_the_elastic_ones_and_sand_with_a_tension_cut_off) {
+  MaterialOptions o;
+  const auto holds = [&](MaterialModel model) {
+    o.model = model;
+    const bool asked = o.holds_tension();
+    EXPECT_EQ(make_material<double>(o).holds_tension(), asked);
+    return asked;
+  };
+  for (const MaterialModel model :
+       {MaterialModel::hencky, MaterialModel::corotated, MaterialModel::linear_elastic, MaterialModel::neo_hookean})
+    EXPECT_TRUE(holds(model));
+  for (const MaterialModel model :
+       {MaterialModel::drucker_prager, MaterialModel::mu_of_i, MaterialModel::herschel_bulkley})
+    EXPECT_FALSE(holds(model));
+  o.cohesion = 1e4;
+  EXPECT_FALSE(holds(MaterialModel::drucker_prager)) << "cohesion alone carries no mean tension";
+  o.tension_cutoff = 1e3;
+  EXPECT_TRUE(holds(MaterialModel::drucker_prager));
+}
+
 /// A lone point opens by the same rate for ever: its gradient is that of its own affine velocity.
 TEST(DruckerPrager, lone_grain_that_opens_for_ever_keeps_a_state) {
   const auto material = sand();

@@ -118,6 +118,31 @@ TEST_P(ColumnImplicit, throw_no_point_that_lands_by_itself) {
   }
 }
 
+TEST_P(ColumnImplicit, keep_a_post_of_single_points_standing) {
+  // Nothing forgets its stress up to 0.5 CFL, nor what holds tension in any steps that it may take (T6d).
+  Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
+  fill(d, {5, 6, 5, 6, 0, 4}, 1, 2);
+  const auto sinks = [&](MaterialModel model, double cfl) {
+    SolveOptions o = LayeredBlock{0, 30, 1}.options();
+    o.material.model = model;
+    o.material.cohesion = 1e6;
+    o.material.youngs_modulus = 2e6;
+    o.cfl = cfl;
+    o.damping = 0.3;
+    const Scene scene = make_scene(d, o);
+    const auto solver = make_solver(scene, o, GetParam());
+    const double start = centre(*solver, scene).z;
+    run_to(*solver, 3);
+    return start - centre(*solver, scene).z;
+  };
+  const double expected = 2000 * 9.81 * 4 * 4 / 3 / 2e6;  // rho g H^2 / (3 E) in the mean
+  for (const auto& [model, cfl] : {std::pair{MaterialModel::hencky, 0.9}, {MaterialModel::drucker_prager, 0.5}}) {
+    const double fine = sinks(model, 0.1);
+    EXPECT_NEAR(fine, expected, 0.3 * expected);  // four cells, one wide, on a base node that holds it
+    EXPECT_NEAR(sinks(model, cfl), fine, 0.01 * fine);
+  }
+}
+
 TEST_P(ColumnImplicit, rest_where_friction_holds) {
   const LayeredBlock c{25, 30, 0.25};
   const Ran shaken = ran(c, c.options(), 1), later = ran(c, c.options(), 4);

@@ -101,6 +101,26 @@ TEST(Warnings, count_what_joins_friction_in_implicit_steps) {
   EXPECT_TRUE(says(warnings(two_metres_of_mass(), o), "the bed asks up to 0.643"));
 }
 
+TEST(Warnings, count_columns_one_cell_wide_that_forget_their_stress) {
+  Domain d = two_metres_of_mass();
+  for (double& t : d.release_thickness.values) t = 0;
+  for (int i = 3; i < 7; ++i) d.release_thickness.at(i, 3) = d.release_thickness.at(i, 9) = 2;
+  SolveOptions o = mass_on_bed(30, 20);
+  o.integrator = Integrator::column_implicit;
+  o.cfl = 1.5;
+  EXPECT_TRUE(warnings(d, o).empty()) << "a ridge has company";
+  d.release_thickness.at(9, 6) = 4;
+  const auto lines = warnings(d, o);
+  ASSERT_EQ(lines.size(), 1u);
+  for (const char* words : {"20 % of the release", "cfl = 1.5, above 0.5"})
+    EXPECT_TRUE(says(lines, words)) << words << "\n" << lines[0];
+  o.cfl = 0.5;
+  EXPECT_TRUE(warnings(d, o).empty());
+  o.cfl = 1;
+  o.material.tension_cutoff = 1e3;
+  EXPECT_TRUE(warnings(d, o).empty());
+}
+
 TEST(Warnings, name_a_cone_that_would_carry_tension) {
   EXPECT_TRUE(warnings(two_metres_of_mass(), mass_on_bed(40, 20)).empty());
   const auto lines = warnings(two_metres_of_mass(), mass_on_bed(45, 20));

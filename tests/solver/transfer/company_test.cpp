@@ -50,7 +50,8 @@ TEST(Company, is_some_in_a_patch_as_wide_as_a_cell) {
 
 TEST(ShareKeptAlone, is_all_in_company_and_in_short_steps) {
   EXPECT_EQ(share_kept_alone(0.7, 5.0), 1);
-  EXPECT_EQ(share_kept_alone(1.0, 0.45 / std::sqrt(2)), 1);
+  EXPECT_EQ(share_kept_alone(1.0, 0.4999 / std::sqrt(2)), 1);
+  EXPECT_LT(share_kept_alone(1.0, 0.51 / std::sqrt(2)), 1);
 }
 
 /// The largest strain of a lone point that starts compressed by 1, over 200 steps: it goes by (omega dt)^2 = `square`,
@@ -67,7 +68,7 @@ double largest_strain(double square, double kept) {
 
 TEST(ShareKeptAlone, keeps_a_lone_point_from_swinging_up) {
   for (const double cfl : {0.6, 1.0, 1.4, 1.6}) {
-    const double crossed = cfl / std::sqrt(2), worst = 37 * crossed * crossed;
+    const double crossed = cfl / std::sqrt(2), worst = 32 * crossed * crossed;
     EXPECT_GT(largest_strain(worst, 1), 1e6) << cfl;
     for (const double share : {0.25, 0.5, 1.0}) {  // of the highest frequency there is
       const double kept = share_kept_alone(1.0, crossed);
