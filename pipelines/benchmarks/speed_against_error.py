@@ -137,7 +137,7 @@ STEPS = [
 ]  # fmt: skip
 
 
-# What lies still: an elastic slab of 60 x 30 x 2 m on 20 degrees over a bed of 25, brought to equilibrium, for ten minutes.
+# What lies still: an elastic slab of 60 x 30 x 2 m on 20 degrees over a bed of 25, in equilibrium, for ten minutes.
 SLAB = Scene("slab", "tests/validation/B1/recipe.toml", 1, 0.5, 1e8, {
     "preprocess": {
         "laboratory": {"columns": 80, "rows": 50, "slope_x": -math.tan(math.radians(20))},
