@@ -178,7 +178,11 @@ struct Sheet {
     for (int n = 0; n < across; ++n) {
       const auto [first, off] = at(height(n));
       const std::array<double, 3> w = weights(off), g = slopes(off);
-      for (int c = 0; c < 3; ++c) m.block<3, 3>(3 * (first + c), 3 * (first + c)).diagonal().array() += w.at(c);
+      int node = 3 * first;
+      for (const double weight : w) {
+        m.block<3, 3>(node, node).diagonal().array() += weight;
+        node += 3;
+      }
       for (int c = 0; c < 2; ++c) {
         const Eigen::Matrix3d spring = (c == 0 ? -g[0] : g[2]) * share * ground.springs();
         const int low = 3 * (first + c), high = low + 3;
@@ -206,12 +210,12 @@ struct Sheet {
         }
         for (int n = 0; n < across; ++n, row += 6) {
           const auto [first, off] = at(height(n));
-          for (int c = 0; c < 3; ++c) {
+          for (std::size_t c = 0; c < 3; ++c) {
             const double w = weights(off).at(c), g = slopes(off).at(c) / ground.layer;
             const Eigen::Vector3cd s =
                 ground.to_map() * Eigen::Vector3cd(slope_x * sum_y * w, sum_x * slope_y * w, sum_x * sum_y * g);
-            all.block<6, 3>(row, 3 * (first + c)) << s.x(), 0, 0, 0, s.y(), 0, 0, 0, s.z(), s.y(), s.x(), 0, 0, s.z(),
-                s.y(), s.z(), 0, s.x();
+            all.block<6, 3>(row, 3 * (first + static_cast<int>(c))) << s.x(), 0, 0, 0, s.y(), 0, 0, 0, s.z(), s.y(),
+                s.x(), 0, 0, s.z(), s.y(), s.z(), 0, s.x();
           }
         }
       }
