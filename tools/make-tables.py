@@ -60,8 +60,9 @@ def rows_of_validation():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if name:
             case = name.group(1)
-        elif len(cells) == 7 and cells[5].strip("*") in ("met", "missed") and not cells[0].startswith("cost"):
-            rows.append((case, cells[0], float(cells[3]), float(cells[4]), cells[5] == "met"))
+        elif len(cells) == 7 and cells[5].strip("*") in ("met", "missed", "failed") and not cells[0].startswith("cost"):
+            error = None if cells[3] == "-" else float(cells[3])  # none: the run failed
+            rows.append((case, cells[0], error, float(cells[4]), cells[5] == "met"))
     if not rows or not heading:
         sys.exit(f"tools/make-tables.py: {ROWS.relative_to(ROOT)} holds no judged rows. Write it: make validate")
     return rows, heading.groups()
@@ -78,7 +79,7 @@ def validated(cases):
         mine = [row for row in rows if row[0] == case]
         if not mine:
             continue
-        errors = sorted(row[2] for row in mine)
+        errors = sorted(row[2] for row in mine if row[2] is not None)
         met = sum(row[4] for row in mine)
         lines.append(f"| {case}: {CASES[case][0]} | {CASES[case][1]} | {met} of {len(mine)} | "
                      f"{percent(errors[len(errors) // 2])} | {percent(errors[-1])} |")
