@@ -112,6 +112,22 @@ Eigen::Matrix<double, 6, 6> elasticity() {
   return d;
 }
 
+/// The function ties node n and the next one up by a spring; n counts the numbers of an inertia matrix.
+void tie(Eigen::MatrixXd& inertia, int n, const Eigen::Matrix3d& spring) {
+  inertia.block<3, 3>(n, n) += spring;
+  inertia.block<3, 3>(n + 3, n + 3) += spring;
+  inertia.block<3, 3>(n, n + 3) -= spring;
+  inertia.block<3, 3>(n + 3, n) -= spring;
+}
+
+/// The strains of a point by the velocity of a node, whose weight has this gradient.
+template <class Number>
+Eigen::Matrix<Number, 6, 3> strains_by(const Eigen::Matrix<Number, 3, 1>& s) {
+  Eigen::Matrix<Number, 6, 3> strains;
+  strains << s.x(), 0, 0, 0, s.y(), 0, 0, 0, s.z(), s.y(), s.x(), 0, 0, s.z(), s.y(), s.z(), 0, s.x();
+  return strains;
+}
+
 /// A lone point of mass 1: its strains by the velocities of its nodes, and inertia by columns.
 struct LonePoint {
   Eigen::MatrixXd strains = Eigen::MatrixXd::Zero(6, 81), inertia = Eigen::MatrixXd::Zero(81, 81);
@@ -127,22 +143,14 @@ struct LonePoint {
               ground.to_map() * Eigen::Vector3d(g[0][a] * w[1][b] * w[2][c], w[0][a] * g[1][b] * w[2][c],
                                                 w[0][a] * w[1][b] * g[2][c] / ground.layer);
           const int n = first + 3 * static_cast<int>(c);
-          strains.block<6, 3>(0, n) << s.x(), 0, 0, 0, s.y(), 0, 0, 0, s.z(), s.y(), s.x(), 0, 0, s.z(), s.y(), s.z(),
-              0, s.x();
+          strains.block<6, 3>(0, n) = strains_by<double>(s);
           inertia.block<3, 3>(n, n) += w[0][a] * w[1][b] * w[2][c] * Eigen::Matrix3d::Identity();
         }
         const double share = kappa * crossed * crossed * w[0][a] * w[1][b];
-        tie(first, -g[2][0] * share * ground.springs());
-        tie(first + 3, g[2][2] * share * ground.springs());
+        tie(inertia, first, -g[2][0] * share * ground.springs());
+        tie(inertia, first + 3, g[2][2] * share * ground.springs());
       }
     }
-  }
-  /// The method ties node n and the next one up by a spring.
-  void tie(int n, const Eigen::Matrix3d& spring) {
-    inertia.block<3, 3>(n, n) += spring;
-    inertia.block<3, 3>(n + 3, n + 3) += spring;
-    inertia.block<3, 3>(n, n + 3) -= spring;
-    inertia.block<3, 3>(n + 3, n) -= spring;
   }
   /// The largest of (omega dt)^2 over crossed^2.
   double square() const {
@@ -185,11 +193,7 @@ struct Sheet {
       }
       for (int c = 0; c < 2; ++c) {
         const Eigen::Matrix3d spring = (c == 0 ? -g[0] : g[2]) * share * ground.springs();
-        const int low = 3 * (first + c), high = low + 3;
-        m.block<3, 3>(low, low) += spring;
-        m.block<3, 3>(high, high) += spring;
-        m.block<3, 3>(low, high) -= spring;
-        m.block<3, 3>(high, low) -= spring;
+        tie(m, 3 * (first + c), spring);
       }
     }
     return m;
@@ -214,8 +218,7 @@ struct Sheet {
             const double w = weights(off).at(c), g = slopes(off).at(c) / ground.layer;
             const Eigen::Vector3cd s =
                 ground.to_map() * Eigen::Vector3cd(slope_x * sum_y * w, sum_x * slope_y * w, sum_x * sum_y * g);
-            all.block<6, 3>(row, 3 * (first + static_cast<int>(c))) << s.x(), 0, 0, 0, s.y(), 0, 0, 0, s.z(), s.y(),
-                s.x(), 0, 0, s.z(), s.y(), s.z(), 0, s.x();
+            all.block<6, 3>(row, 3 * (first + static_cast<int>(c))) = strains_by<Complex>(s);
           }
         }
       }
