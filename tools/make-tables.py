@@ -81,8 +81,8 @@ def validated(cases):
             continue
         errors = sorted(row[2] for row in mine if row[2] is not None)
         met = sum(row[4] for row in mine)
-        lines.append(f"| {case}: {CASES[case][0]} | {CASES[case][1]} | {met} of {len(mine)} | "
-                     f"{percent(errors[len(errors) // 2])} | {percent(errors[-1])} |")
+        middle, most = (percent(errors[len(errors) // 2]), percent(errors[-1])) if errors else ("-", "-")
+        lines.append(f"| {case}: {CASES[case][0]} | {CASES[case][1]} | {met} of {len(mine)} | {middle} | {most} |")
     return [*lines, "", f"Commit {commit[:7]}, {day}, on {' and '.join(place.split('; '))}, by",
             "`make validate LONG=1`. The error of a quantity that must lie in a band is its distance from the band."]
 

@@ -31,9 +31,8 @@ def preset(step, **keys):
 
 
 def newton(steps, tolerance):
-    changes = {"energy_budget": False, "implicit": {"newton_tolerance": tolerance}}
-    return runs.Method(f"Newton to {tolerance:g}", f"{steps:g} CFL",
-                       runs.merged(runs.newton(steps).changes, {"solve": changes}))  # fmt: skip
+    changes = runs.merged(runs.newton(steps, tolerance).changes, {"solve": {"energy_budget": False}})
+    return runs.Method(f"Newton to {tolerance:g}", f"{steps:g} CFL", changes)
 
 
 VARIANTS = {

@@ -42,12 +42,13 @@ class ShortSteps {
   ShortSteps(Bench& bench, const Sand& sand)
       : bench_(bench),
         sand_(sand),
-        reference_(run_at("explicit", bench.coarse() ? 0.25 : 0.1)),
+        reference_(run_at("explicit", shortest())),
         centre_(centre_of(reference_)),
         reach_(reach_of(reference_)) {
     bench_.note(reference_, "run-out [m]", end_of(reference_, sand_));
   }
 
+  double shortest() const { return bench_.coarse() ? 0.25 : 0.1; }  ///< over the CFL step
   Bench& bench() const { return bench_; }
   const Sand& sand() const { return sand_; }
   std::string grid() const { return fmt::format(", h = {:g} m", sand_.h); }
@@ -98,14 +99,12 @@ Series newmark_line(const ShortSteps& against, const TangentScheme& scheme, cons
   return line;
 }
 
-/// Steps of these shares of the CFL step.
-Series cfl_line(const ShortSteps& against, const char* integrator, const std::vector<double>& lengths, double tolerance,
-                int colour) {
-  Series line{integrator, {}, {}, colour};
+/// Steps of these shares of the CFL step, on a line that is called by its integrator.
+Series cfl_line(const ShortSteps& against, Series line, const std::vector<double>& lengths, double tolerance) {
   line.marks = true;
   for (const double cfl : lengths) {
     line.x.push_back(cfl);
-    line.y.push_back(against.judge(against.run_at(integrator, cfl), tolerance));
+    line.y.push_back(against.judge(against.run_at(line.name.c_str(), cfl), tolerance));
   }
   return line;
 }
@@ -116,16 +115,16 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
   Chart chart;
   chart.title = "C1: sand column, centre of mass over the step" + against.grid();
   chart.x_label = "step over the CFL step";
-  chart.y_label = fmt::format("difference to explicit steps of {:g} CFL [%]", bench.coarse() ? 0.25 : 0.1);
+  chart.y_label = fmt::format("difference to explicit steps of {:g} CFL [%]", against.shortest());
   chart.log_x = true;
   int colour = 1;
   for (const TangentScheme& scheme : {TangentScheme{"frozen-yield", "pcg"}, {"exact", "bicgstab"}})
     chart.series.push_back(newmark_line(against, scheme, lengths, colour++));
   const bool coarse = bench.coarse();
-  chart.series.push_back(
-      cfl_line(against, "explicit", coarse ? std::vector<double>{0.5} : std::vector<double>{0.25, 0.5}, 0.02, 0));
-  chart.series.push_back(cfl_line(against, "column-implicit",
-                                  coarse ? std::vector<double>{1.5} : std::vector<double>{0.5, 1, 1.5}, 0.03, colour));
+  const std::vector<double> short_ones = coarse ? std::vector<double>{0.5} : std::vector<double>{0.25, 0.5},
+                            by_columns = coarse ? std::vector<double>{1.5} : std::vector<double>{0.5, 1, 1.5};
+  chart.series.push_back(cfl_line(against, {"explicit", {against.shortest()}, {0}, 0}, short_ones, 0.02));
+  chart.series.push_back(cfl_line(against, {"column-implicit", {}, {}, colour}, by_columns, 0.03));
   bench.picture(fmt::format("C1-centre-{:g}", s.h), png_of(chart));
 }
 
