@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/validation/cases.hpp"
@@ -24,25 +25,69 @@ Sand column_of(double aspect, double cells) {
   return s;
 }
 
+/// Two profiles, on coarse and on fine cells, and what they are held against.
+struct Profiles {
+  Series coarse, fine;
+  std::vector<Series> laboratories;
+};
+
+/// The profiles of columns of some aspect ratios, one panel each.
+class ProfilePicture {
+ public:
+  explicit ProfilePicture(std::string x_label) : x_label_(std::move(x_label)) {}
+
+  void add(double aspect, Profiles p) {
+    if (p.coarse.x.empty() || p.fine.x.empty()) return;
+    Chart panel;
+    panel.title = fmt::format("aspect ratio {:g}", aspect);
+    panel.x_label = x_label_;
+    panel.y_label = "z [m]";
+    panel.equal_scales = true;
+    double far = 0, high = 0;
+    p.coarse.name = "computed";
+    p.coarse.dashed = true;
+    p.fine.name = "computed, cells half as large";
+    panel.series = {p.coarse, p.fine};
+    panel.series.insert(panel.series.end(), p.laboratories.begin(), p.laboratories.end());
+    for (const Series& s : panel.series) {
+      for (const double x : s.x) far = std::isfinite(x) ? std::max(far, x) : far;
+      for (const double y : s.y) high = std::isfinite(y) ? std::max(high, y) : high;
+    }
+    panel.x = Limits{-0.02 * far, 1.05 * far};
+    panel.y = Limits{0, std::max(1.6 * high, 0.2 * far)};  // with room for the legend
+    panels_.push_back(panel);
+  }
+  std::string png() const { return png_of_panels(panels_); }
+
+ private:
+  std::string x_label_;
+  std::vector<Chart> panels_;
+};
+
 /// Columns of one aspect ratio with 16 cells along the height and 32, and what halving the cells moves.
-Collapse halved(Bench& bench, double aspect) {
+Collapse halved(Bench& bench, double aspect, Profiles& profiles) {
   Collapse result;
   double before = nothing;
-  Series outline;
+  Series& coarse = profiles.coarse;
   for (const bool finer : {false, true}) {
     Sand s = column_of(aspect, 16);
     if (finer) s.h /= 2;
     result = collapse(bench, fmt::format("a = {:g}, h = {:.2g} mm", aspect, 1000 * s.h), s, {});
+    const bool ran = result.outcome.ok();
+    if (ran)
+      (finer ? profiles.fine : coarse) =
+          outline_of(result.outcome, result.outcome.frames.size() - 1, s, finer ? 2 : 4);
     if (finer) {
       bench.measure(result.outcome, "run-out that halving the cells moves", result.front / before - 1, 0.03);
-      if (result.outcome.ok() && !outline.x.empty()) {
-        const Series fine = outline_of(result.outcome, result.outcome.frames.size() - 1, s, 2);
-        bench.note(result.outcome, "profile moved over height", profile_difference(outline, fine));
-      }
+      if (ran && !coarse.x.empty())
+        bench.note(result.outcome, "profile moved over height", profile_difference(coarse, profiles.fine));
     }
     before = result.front;
-    if (result.outcome.ok()) outline = outline_of(result.outcome, result.outcome.frames.size() - 1, s, 2);
   }
+  const Sand s = column_of(aspect, 16);
+  profiles.laboratories = {laboratory("Lube et al. 2005", s, lube_run_out(aspect), lube_height(aspect), 1),
+                           laboratory("Lajeunesse et al. 2005", s, lajeunesse_run_out(aspect),
+                                      lajeunesse_height(aspect), 3)};
   return result;
 }
 
@@ -105,8 +150,11 @@ void sand_column_aspects(Bench& bench) {
   ours.line = false;
   ours.marks = true;
   ours.mark_size = 10;
+  ProfilePicture pictures("x [m]");
   for (const double aspect : {0.5, 1.0, 1.5, 3.0, 5.0, 7.0, 9.0}) {
-    const Collapse c = halved(bench, aspect);
+    Profiles profiles;
+    const Collapse c = halved(bench, aspect, profiles);
+    pictures.add(aspect, profiles);
     ours.x.push_back(aspect);
     ours.y.push_back(c.front / Sand{}.width - 1);
   }
@@ -115,13 +163,17 @@ void sand_column_aspects(Bench& bench) {
   chart.series = {draw("Lube et al. 2005", lube_run_out, 0.4, 0.1, 14), draw("", lube_run_out, 2.81, 0.5, 14), wide,
                   ours};
   bench.picture("A3b-run-out", png_of(chart));
+  bench.picture("A3b-profiles", pictures.png());
 }
 
 /// Round columns, as a quarter between two rollers; run-out and height by the laws of one laboratory.
 void round_sand_columns(Bench& bench) {
+  ProfilePicture pictures("distance from the axis [m]");
   for (const double aspect : {0.5, 1.0, 2.0, 4.0}) {
     const Band run_out = band_of(round_run_out(aspect), nothing), height = band_of(round_height(aspect), nothing);
     double before = nothing;
+    Profiles profiles{
+        {}, {}, {laboratory("Lube et al. 2004", Sand{}, round_run_out(aspect), round_height(aspect), 1)}};
     for (const double cells : {8.0, 16.0}) {
       Sand s = column_of(aspect, static_cast<int>(std::lround(cells * std::max(1.0, aspect))));
       s.per_cell = s.h > s.width / 8 ? 4 : 3;
@@ -136,8 +188,11 @@ void round_sand_columns(Bench& bench) {
       if (std::isfinite(before))
         bench.measure(o, "run-out that halving the cells moves", (1 + front) / (1 + before) - 1, 0.03);
       before = front;
+      if (o.ok()) (cells < 16 ? profiles.coarse : profiles.fine) = outline_of_quarter(o.last(), s, cells < 16 ? 4 : 2);
     }
+    pictures.add(aspect, profiles);
   }
+  bench.picture("A3c-profiles", pictures.png());
 }
 
 }  // namespace talus::validation

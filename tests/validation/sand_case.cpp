@@ -22,15 +22,6 @@ std::size_t frame_at(const Outcome& o, double time) {
   return static_cast<std::size_t>(nearest - o.frames.begin());
 }
 
-/// Height and run-out of a laboratory as two marks.
-Series laboratory(const std::string& name, const Sand& s, double run_out, double height, int colour) {
-  Series marks{name, {0, s.width * (1 + run_out)}, {s.width * height, 0}, colour};
-  marks.line = false;
-  marks.marks = true;
-  marks.mark_size = 11;
-  return marks;
-}
-
 /// The column before the gate goes and at the times of the paper's Fig. 12, one panel each.
 std::string outlines(const Outcome& o, const Sand& s, const std::string& title) {
   std::vector<Chart> panels;

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
 
 namespace talus::validation {
 namespace {
@@ -50,6 +53,32 @@ Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour
     if (outline.y.back() == 0) break;
   }
   return outline;
+}
+
+Series outline_of_quarter(const Points& points, const Sand& s, int colour) {
+  std::vector<double> volume;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const double radius = std::hypot(points.position[n][0], points.position[n][1]);
+    if (!std::isfinite(radius)) continue;
+    const auto ring = static_cast<std::size_t>(radius / s.h);
+    if (ring >= volume.size()) volume.resize(ring + 1);
+    volume[ring] += static_cast<double>(points.volume[n]);
+  }
+  Series outline{"", {}, {}, colour};
+  for (std::size_t ring = 0; ring < volume.size() && volume[ring] > 0; ++ring) {
+    const double middle = (static_cast<double>(ring) + 0.5) * s.h;
+    outline.x.push_back(middle);
+    outline.y.push_back(volume[ring] / (std::numbers::pi / 2 * middle * s.h));
+  }
+  return outline;
+}
+
+Series laboratory(const std::string& name, const Sand& s, double run_out, double height, int colour) {
+  Series marks{name, {0, s.width * (1 + run_out)}, {s.width * height, 0}, colour};
+  marks.line = false;
+  marks.marks = true;
+  marks.mark_size = 11;
+  return marks;
 }
 
 double profile_difference(const Series& coarse, const Series& fine) {

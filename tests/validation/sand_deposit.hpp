@@ -20,6 +20,12 @@ double top_of(const Points& points, const Sand& s);
 /// apart than a cell.
 Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour);
 
+/// The same over the distance from the axis, of a quarter of a round deposit: the mean of rings a cell wide.
+Series outline_of_quarter(const Points& points, const Sand& s, int colour);
+
+/// Height and run-out of a laboratory as two marks.
+Series laboratory(const std::string& name, const Sand& s, double run_out, double height, int colour);
+
 /// The root mean square difference of two outlines over the length of the longer one, over the height of the finer.
 double profile_difference(const Series& coarse, const Series& fine);
 
