@@ -56,19 +56,20 @@ Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour
 }
 
 Series outline_of_quarter(const Points& points, const Sand& s, int colour) {
+  const double wide = 2 * s.h;
   std::vector<double> volume;
   for (std::size_t n = 0; n < points.size(); ++n) {
     const double radius = std::hypot(points.position[n][0], points.position[n][1]);
     if (!std::isfinite(radius)) continue;
-    const auto ring = static_cast<std::size_t>(radius / s.h);
+    const auto ring = static_cast<std::size_t>(radius / wide);
     if (ring >= volume.size()) volume.resize(ring + 1);
     volume[ring] += static_cast<double>(points.volume[n]);
   }
   Series outline{"", {}, {}, colour};
   for (std::size_t ring = 0; ring < volume.size() && volume[ring] > 0; ++ring) {
-    const double middle = (static_cast<double>(ring) + 0.5) * s.h;
+    const double middle = (static_cast<double>(ring) + 0.5) * wide;
     outline.x.push_back(middle);
-    outline.y.push_back(volume[ring] / (std::numbers::pi / 2 * middle * s.h));
+    outline.y.push_back(volume[ring] / (std::numbers::pi / 2 * middle * wide));
   }
   return outline;
 }

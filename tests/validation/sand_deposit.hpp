@@ -20,7 +20,7 @@ double top_of(const Points& points, const Sand& s);
 /// apart than a cell.
 Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour);
 
-/// The same over the distance from the axis, of a quarter of a round deposit: the mean of rings a cell wide.
+/// The same over the distance from the axis, of a quarter of a round deposit: the mean of rings two cells wide.
 Series outline_of_quarter(const Points& points, const Sand& s, int colour);
 
 /// Height and run-out of a laboratory as two marks.
