@@ -9,7 +9,8 @@ usage: tools/make-pictures.py [NAME...] --bin DIR --work DIR [--data DIR]     ma
 docs/pictures/pictures.json lists every picture: what makes it, the files that decide what it shows ("from"), and the
 SHA-256 of these ("stamp"). A tutorial counts by its commands and files alone, so that its prose may change. Sources
 of programs are not among them: tests of the tutorials draw their pictures anew and compare (decision 0042).
-Pictures of real events need their data (--data), and are left as they are without.
+Pictures of real events need their data (--data), and those of a validation case what make validate leaves beside the
+programs; without, they are left as they are.
 """
 import argparse
 import hashlib
@@ -128,6 +129,11 @@ def make_peaks(asked, picture):
           *(other.replace("=", f"={data}/") for other in others)])
 
 
+def case_picture(name, asked):
+    """Where make validate leaves this picture of a case."""
+    return asked.bin.resolve().parent / f"validation/{name}.png"
+
+
 def make_budget(scene, asked, picture):
     """The table of an error budget in the report of a scene."""
     sys.path.insert(0, str(ROOT / "tests/pipeline"))
@@ -158,6 +164,11 @@ def make_all(names, asked):
         if entry.get("needs") and not (asked.data and (asked.data / entry["needs"]).is_dir()):
             print(f"{picture}: left as it is, for --data holds no {entry['needs']}", file=sys.stderr)
             continue
+        kind, _, name = entry["by"].partition(" ")
+        if kind == "case" and not case_picture(name, asked).exists():
+            print(f"{picture}: left as it is, for there is no {case_picture(name, asked)}. Make it: make validate "
+                  f"LONG=1 CASES={name.partition('-')[0]}", file=sys.stderr)
+            continue
         makers.setdefault(entry["by"], []).append(picture)
     for maker, pictures in makers.items():
         kind, _, name = maker.partition(" ")
@@ -169,6 +180,8 @@ def make_all(names, asked):
             make_budget(name, asked, pictures[0])
         elif kind == "peaks":
             make_peaks(asked, pictures[0])
+        elif kind == "case":
+            shutil.copyfile(case_picture(name, asked), FOLDER / pictures[0])
         else:
             call([sys.executable, ROOT / name])
         for picture in pictures:
