@@ -162,14 +162,17 @@ struct UpdateColumns {
   }
 
   /// The velocity of a node of this mass after contact with the bed [m/s].
-  TALUS_HD Vec3<Real> meet_bed(const Column& at, int k, const Vec3<Real>& v, Real mass, Real dt) const {
+  TALUS_HD Vec3<Real> meet_bed(const Column& at, int k, const Vec3<Real>& free, Real mass, Real dt) const {
     BaseFriction<Real> law = friction;
     if (content == NodeContent::remapped && !law.holds()) law.law = FrictionLaw::none;
+    const Vec3<Real> v = along_walls(walls, at.i, at.j, k, free);
     const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
     // On a Cartesian grid the nodes inside the ground touch no bed of their own.
     const bool grips = content != NodeContent::remapped && friction.asks_pressure() && k == at.top_contact;
     const Real grip = grips ? bed_area(mass, full_base, grid.spacing, sx, sy) * dt / mass : Real(0);
-    return meet_ground(law, at.column, v, sx, sy, {.duration = dt, .grip = grip, .turn = turn_at(at, v)});
+    const Vec3<Real> met =
+        meet_ground(law, at.column, v, sx, sy, {.duration = dt, .grip = grip, .turn = turn_at(at, v)});
+    return met + (free - v);
   }
 
   /// The velocity across the bed by which the ground turns under a column's node in half a step (T12d) [m/s].

@@ -157,6 +157,29 @@ TEST(SolveColumns, meet_the_bed_with_coulombs_share_of_the_impulse_that_presses)
   EXPECT_LT(sticks.rubbing / sticks.pressing, 5) << "what has come to rest is pushed no further";
 }
 
+TEST(SolveColumns, meet_the_bed_beside_a_wall_as_without_what_pushes_into_it) {
+  SolvedColumn pushed, free;
+  for (SolvedColumn* c : {&pushed, &free}) {
+    c->grid = SmallGrid{0.3, 0};
+    c->friction.law = FrictionLaw::coulomb;
+    c->friction.uniform.numbers[0] = 0.1;
+    for (int k = 0; k < 6; ++k) c->node(k).z = -5 * c->node(k).w;
+  }
+  pushed.walls.count = 1;
+  pushed.walls.list[0] = {.axis = 1, .side = 1, .position = SolvedColumn::j};
+  for (int k = 0; k < 6; ++k) {
+    free.node(k).y = free.force(k).y = 0;
+    pushed.node(k).y = -8 * pushed.node(k).w;
+  }
+  pushed.solve();
+  free.solve();
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_NEAR(pushed.node(k).x, free.node(k).x, 1e-12) << k;
+    EXPECT_NEAR(pushed.node(k).z, free.node(k).z, 1e-12) << k;
+    EXPECT_EQ(pushed.node(k).y, 0) << k;
+  }
+}
+
 TEST(SolveColumns, leave_what_hovers_over_a_gap_to_itself) {
   SolvedColumn c;
   c.node(2) = {};

@@ -123,6 +123,18 @@ TEST(UpdateColumns, stops_at_a_fixed_wall) {
   EXPECT_EQ(u.at(u.nodes, 3).z, 0);
 }
 
+TEST(UpdateColumns, slows_the_slip_along_a_wall_by_all_of_the_beds_friction) {
+  for (const WallKind kind : {WallKind::roller, WallKind::frictional}) {
+    Updated u;
+    u.walls.count = 1;
+    u.walls.list[0] = {.axis = 1, .side = -1, .position = 2, .kind = kind};  // holds rows from 2 on
+    u.at(u.nodes, 0) = {100, 300, 400, 0};  // faster into the wall than along it, as under pressure
+    u.update<NodeContent::impulse>();
+    EXPECT_DOUBLE_EQ(u.at(u.nodes, 0).x, 3 - 0.5 * 1);
+    EXPECT_EQ(u.at(u.nodes, 0).y, 0);
+  }
+}
+
 TEST(UpdateColumns, records_thickness_and_arrival_of_the_column) {
   Updated u;
   u.update<NodeContent::impulse>();
