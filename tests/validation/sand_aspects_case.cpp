@@ -75,8 +75,7 @@ Collapse halved(Bench& bench, double aspect, Profiles& profiles) {
     result = collapse(bench, fmt::format("a = {:g}, h = {:.2g} mm", aspect, 1000 * s.h), s, {});
     const bool ran = result.outcome.ok();
     if (ran)
-      (finer ? profiles.fine : coarse) =
-          outline_of(result.outcome, result.outcome.frames.size() - 1, s, finer ? 2 : 4);
+      (finer ? profiles.fine : coarse) = outline_of(result.outcome, result.outcome.frames.size() - 1, s, finer ? 2 : 4);
     if (finer) {
       bench.measure(result.outcome, "run-out that halving the cells moves", result.front / before - 1, 0.03);
       if (ran && !coarse.x.empty())
@@ -85,9 +84,9 @@ Collapse halved(Bench& bench, double aspect, Profiles& profiles) {
     before = result.front;
   }
   const Sand s = column_of(aspect, 16);
-  profiles.laboratories = {laboratory("Lube et al. 2005", s, lube_run_out(aspect), lube_height(aspect), 1),
-                           laboratory("Lajeunesse et al. 2005", s, lajeunesse_run_out(aspect),
-                                      lajeunesse_height(aspect), 3)};
+  profiles.laboratories = {
+      laboratory("Lube et al. 2005", s, lube_run_out(aspect), lube_height(aspect), 1),
+      laboratory("Lajeunesse et al. 2005", s, lajeunesse_run_out(aspect), lajeunesse_height(aspect), 3)};
   return result;
 }
 
@@ -172,8 +171,7 @@ void round_sand_columns(Bench& bench) {
   for (const double aspect : {0.5, 1.0, 2.0, 4.0}) {
     const Band run_out = band_of(round_run_out(aspect), nothing), height = band_of(round_height(aspect), nothing);
     double before = nothing;
-    Profiles profiles{
-        {}, {}, {laboratory("Lube et al. 2004", Sand{}, round_run_out(aspect), round_height(aspect), 1)}};
+    Profiles profiles{{}, {}, {laboratory("Lube et al. 2004", Sand{}, round_run_out(aspect), round_height(aspect), 1)}};
     for (const double cells : {8.0, 16.0}) {
       Sand s = column_of(aspect, static_cast<int>(std::lround(cells * std::max(1.0, aspect))));
       s.per_cell = s.h > s.width / 8 ? 4 : 3;
