@@ -99,19 +99,4 @@ TALUS_HD Vec3<Real> meet_walls(const Walls<Real>& walls, int i, int j, int k, Ve
   return v;
 }
 
-/// The velocity of node (i, j, k) without what the upright walls that hold it are about to take [m/s]. With this one a
-/// node meets its bed: friction against the push into a wall as well would be turned away from the slip along it.
-template <class Real>
-TALUS_HD Vec3<Real> along_walls(const Walls<Real>& walls, int i, int j, int k, Vec3<Real> v) {
-  for (int w = 0; w < walls.count; ++w) {
-    const Wall<Real>& wall = walls.list[w];
-    if (wall.axis == 2 || !wall.holds(i, j, k)) continue;
-    Real& normal = component(v, wall.axis);
-    const bool parts = wall.kind == WallKind::frictional && (wall.speed - normal) * Real(wall.side) <= Real(0);
-    if (wall.kind == WallKind::fixed) v = {};
-    if (!parts) normal = wall.speed;
-  }
-  return v;
-}
-
 }  // namespace talus

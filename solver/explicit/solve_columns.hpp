@@ -4,9 +4,9 @@
 // its layers does not bound the step.
 #pragma once
 
+#include "solver/boundary/bed_beside_walls.hpp"
 #include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/ground_turn.hpp"
-#include "solver/boundary/walls.hpp"
 #include "solver/explicit/column_inertia.hpp"
 #include "solver/explicit/node_step.hpp"
 #include "solver/state/clock.hpp"
@@ -187,18 +187,17 @@ struct SolveColumns {
   /// the bed [m/s]. On a Cartesian grid the nodes inside the ground touch no bed of their own.
   TALUS_HD Vec3<Real> meet_bed(const Column& at, int k, const Vec3<Real>& free, Real mass,
                                const Mobility<Real>& mobility) const {
-    const Vec3<Real> v = along_walls(walls, at.i, at.j, k, free);
     const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
+    const BesideWalls<Real> beside = beside_walls(walls, at.i, at.j, k, free, at.normal);
     const bool on_top = k == grid.contact_layer(at.column);
-    const Real turn = turn_of_ground(grid, at.i, at.j, v, at.dt);
-    if (columns.mass && on_top) columns.rise[at.column] = rise_from(v, sx, sy) - turn;
+    const Real turn = turn_of_ground(grid, at.i, at.j, beside.left, at.dt);
+    if (columns.mass && on_top) columns.rise[at.column] = rise_from(beside.left, sx, sy) - turn;
     const Real area = friction.asks_pressure() && on_top ? bed_area(mass, full_base, grid.spacing, sx, sy) : Real(0);
-    const Vec3<Real> met = meet_ground(friction, at.column, v, sx, sy,
-                                       {.duration = at.dt,
-                                        .grip = area * at.dt * mobility.across,
-                                        .leverage = mobility.along / mobility.across,
-                                        .turn = turn});
-    return met + (free - v);
+    return meet_ground(friction, at.column, beside, sx, sy,
+                       {.duration = at.dt,
+                        .grip = area * at.dt * mobility.across,
+                        .leverage = mobility.along / mobility.across,
+                        .turn = turn});
   }
 
   /// The velocities of a node in a step [m/s], and its mass [kg].

@@ -6,9 +6,9 @@
 
 #include <type_traits>
 
+#include "solver/boundary/bed_beside_walls.hpp"
 #include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/ground_turn.hpp"
-#include "solver/boundary/walls.hpp"
 #include "solver/explicit/node_step.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/state/grid_view.hpp"
@@ -140,10 +140,7 @@ struct UpdateColumns {
       v += pull * dt;
     }
     const Vec3<Real> free = v;
-    if (measures_rise(at.column, k)) {
-      columns.rise[at.column] = rise_from(free, grid.slope_x[at.column], grid.slope_y[at.column]) - turn_at(at, free);
-    }
-    if (k <= at.top_contact) v = meet_bed(at, k, v, node.w, dt);
+    if (k <= at.top_contact || measures_rise(at.column, k)) v = meet_bed(at, k, free, node.w, dt);
     const Vec3<Real> met = v;
     if (walls.count > 0) v = meet_walls(walls, at.i, at.j, k, v, content != NodeContent::remapped);
     if constexpr (counts) {
@@ -161,23 +158,20 @@ struct UpdateColumns {
     return v;
   }
 
-  /// The velocity of a node of this mass after contact with the bed [m/s].
+  /// The velocity of a node of this mass after contact with the bed [m/s]; where the ground is met by points between
+  /// the nodes, the method only measures how fast the node leaves it.
   TALUS_HD Vec3<Real> meet_bed(const Column& at, int k, const Vec3<Real>& free, Real mass, Real dt) const {
     BaseFriction<Real> law = friction;
     if (content == NodeContent::remapped && !law.holds()) law.law = FrictionLaw::none;
-    const Vec3<Real> v = along_walls(walls, at.i, at.j, k, free);
     const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
+    const BesideWalls<Real> beside = beside_walls(walls, at.i, at.j, k, free, normal_of(sx, sy));
+    const Real turn = turn_of_ground(grid, at.i, at.j, beside.left, dt);
+    if (measures_rise(at.column, k)) columns.rise[at.column] = rise_from(beside.left, sx, sy) - turn;
+    if (k > at.top_contact) return free;
     // On a Cartesian grid the nodes inside the ground touch no bed of their own.
     const bool grips = content != NodeContent::remapped && friction.asks_pressure() && k == at.top_contact;
     const Real grip = grips ? bed_area(mass, full_base, grid.spacing, sx, sy) * dt / mass : Real(0);
-    const Vec3<Real> met =
-        meet_ground(law, at.column, v, sx, sy, {.duration = dt, .grip = grip, .turn = turn_at(at, v)});
-    return met + (free - v);
-  }
-
-  /// The velocity across the bed by which the ground turns under a column's node in half a step (T12d) [m/s].
-  TALUS_HD Real turn_at(const Column& at, const Vec3<Real>& v) const {
-    return turn_of_ground(grid, at.i, at.j, v, Real(clock->step_size));
+    return meet_ground(law, at.column, beside, sx, sy, {.duration = dt, .grip = grip, .turn = turn});
   }
 };
 

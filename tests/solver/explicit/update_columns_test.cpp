@@ -135,6 +135,19 @@ TEST(UpdateColumns, slows_the_slip_along_a_wall_by_all_of_the_beds_friction) {
   }
 }
 
+TEST(UpdateColumns, holds_what_falls_into_the_corner_between_a_slope_and_a_wall) {
+  Updated u;
+  u.grid = SmallGrid(-0.75, 0);  // descends towards the wall
+  u.walls.count = 1;
+  u.walls.list[0] = {.axis = 0, .side = -1, .position = 5};
+  u.at(u.nodes, 0) = {100, 0, 300, 0};
+  u.update<NodeContent::force, true>();
+  EXPECT_DOUBLE_EQ(u.at(u.nodes, 0).x, 0);
+  EXPECT_NEAR(u.at(u.nodes, 0).z, 0, 1e-15);
+  EXPECT_NEAR(u.at(u.nodes, 0).y, 3 - 0.5 * 1.25, 1e-15) << "the bed bears 1 / cos of the fall of 1 m/s";
+  EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * 1.25, 1e-12);
+}
+
 TEST(UpdateColumns, records_thickness_and_arrival_of_the_column) {
   Updated u;
   u.update<NodeContent::impulse>();
