@@ -18,6 +18,7 @@ import json
 import pathlib
 import re
 import sys
+import textwrap
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -103,10 +104,11 @@ def speed():
         lines.append(f"| {name} | " + " | ".join("not reached" if t is None else f"{t:.2g} s" for t in times) +
                      f" | {min(e for e, _ in mine):.1f} % |")
     commit, machine = next((r["commit"], r["machine"].split(",")[0]) for r in rows if r["commit"])
-    return [*lines, "", f"Frank Slide, 100 s, Young's modulus 1e9 Pa for all, double precision, one {machine}, commit "
-            f"{commit[:7]}, {DAY}, by", "`make -C pipelines/benchmarks speed-against-error`. Error: share of the "
-            "deposit that lies elsewhere than on the finest", "grid. All methods were run on cells of 40 m; all but "
-            "the reference paper's scheme on cells of 20 m too."]
+    text = (f"Frank Slide, 100 s, Young's modulus 1e9 Pa for all, double precision, one {machine}, commit "
+            f"{commit[:7]}, {DAY}, by `make -C pipelines/benchmarks speed-against-error`. Error: share of the deposit "
+            "that lies elsewhere than on the finest grid. All methods were run on cells of 40 m; all but the "
+            "reference paper's scheme on cells of 20 m too.")
+    return [*lines, "", *textwrap.wrap(text, 120, break_on_hyphens=False)]
 
 
 def kernels():
