@@ -46,7 +46,7 @@ TEST_P(Corner, holds_the_sand_that_has_come_to_rest_in_it) {
     run_to(*solver, 10);
     const double sunk = early - lowest(*solver, scene);
     std::printf("  the lowest point sinks by %.1e m in 8 s\n", sunk);
-    EXPECT_LT(sunk, 0.002);  // a hundredth of the height of two points in a cell
+    EXPECT_LT(sunk, 0.002);  // less than a hundredth of the 0.25 m between points
   }
 }
 
