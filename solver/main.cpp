@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // talus-solve: domain.vdb -> run.h5.
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -22,12 +23,12 @@
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/on.hpp"
-#include "solver/run/named_places.hpp"
+#include "solver/plan/named_places.hpp"
+#include "solver/plan/plan.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stability/stability_stage.hpp"
-#include "solver/run/stiffness.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace {
@@ -151,8 +152,8 @@ void refuse_flags_of_runs(const SolveFlags& flags) {
 
 /// This function runs the members of the recipe's ensemble, and returns the facts for the used recipe. `facts` are what
 /// is insisted on.
-Facts run_members_of(StageContext& context, const SolveFlags& flags, const Domain& domain, const SolveOptions& options,
-                     const AnyDevice& device, const Facts& facts) {
+Facts run_members_of(StageContext& context, const SolveFlags& flags, const std::shared_ptr<const Domain>& domain,
+                     const SolveOptions& options, const AnyDevice& device, const Facts& facts) {
   if (options.stability.factor_of_safety)
     throw RecipeError({"[ensemble] with [solve.stability] factor_of_safety", "the search is no run in time",
                        "Leave one of them out"});
@@ -168,21 +169,23 @@ Facts run_members_of(StageContext& context, const SolveFlags& flags, const Domai
 Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& options) {
   const AnyDevice device = make_device(choose_device(flags.on));
   const auto domain_file = inputs_of(options, context.out).front();
-  Domain domain = read_domain(domain_file);
-  const Facts insisted = judge_inputs(context, options, domain_file, domain);
-  for (const std::string& text : idle_places(options, domain.places)) log_info(text);
-  options = with_places(std::move(options), domain.places);
+  const auto domain = std::make_shared<const Domain>(read_domain(domain_file));
+  const Facts insisted = judge_inputs(context, options, domain_file, *domain);
+  for (const std::string& text : idle_places(options, domain->places)) log_info(text);
+  options = with_places(std::move(options), domain->places);
   if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device, insisted);
   if (flags.members || flags.at_a_time > 0)
     throw RecipeError({flags.members ? "--members without an ensemble" : "--at-a-time without an ensemble",
                        "the recipe asks for one run", "Leave it out, or add [ensemble] with members"});
   if (!options.stability.factor_of_safety) {
-    options = settle_stiffness(domain, options);
-    return run_in_time(context, flags.run, options, device, domain, insisted);
+    const auto made = plan(domain, options);
+    for (const std::string& reason : made->reasons) log_info(reason);
+    options = noted_options(*made);
+    return run_in_time(context, flags.run, made, device, insisted);
   }
   refuse_flags_of_runs(flags);
   context.check_only = context.check_only || flags.run.plan;
-  return find_stability(context, options, device, domain, insisted);
+  return find_stability(context, options, device, *domain, insisted);
 }
 
 /// This function notes what was used.
@@ -209,9 +212,10 @@ void complete_run(StageContext& context) {
     if (line == mark) return;
   remove_leftovers(paths);
   const SolveOptions options = options_of(context.recipe, context.out);
-  const Domain domain = read_domain(inputs_of(options, context.out).front());
-  write_used(context, settle_stiffness(domain, with_places(options, domain.places)),
-             facts_of(read_run(paths.run).summary));
+  const auto domain = std::make_shared<const Domain>(read_domain(inputs_of(options, context.out).front()));
+  Plan plan = begin_plan(domain, with_places(options, domain->places));
+  settle(plan);
+  write_used(context, noted_options(plan), facts_of(read_run(paths.run).summary));
 }
 
 /// This function makes the run, unless run.h5 is of this recipe, domain and version already, and then the runs of its

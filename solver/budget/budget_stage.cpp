@@ -21,13 +21,12 @@
 #include "solver/budget/run_variations.hpp"
 #include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/member_cost.hpp"
-#include "solver/run/named_places.hpp"
-#include "solver/run/plausible.hpp"
+#include "solver/plan/named_places.hpp"
+#include "solver/plan/plan.hpp"
+#include "solver/plan/plausible.hpp"
+#include "solver/plan/trial.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
-#include "solver/run/step_choice.hpp"
-#include "solver/run/stiffness.hpp"
-#include "solver/run/trial.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -67,8 +66,8 @@ void find_domain(Variation& one, const BudgetPaths& paths, const Domain& base) {
 
 /// What a budget is made of, once it is read.
 struct BudgetScene {
-  Domain domain;    ///< of the run itself
-  BudgetBase base;  ///< likewise
+  std::shared_ptr<const Domain> domain;  ///< of the run itself
+  BudgetBase base;                       ///< likewise
   Facts insisted;
   std::vector<Variation> variations;  ///< those without a domain left out
 };
@@ -77,17 +76,19 @@ BudgetScene read_budget_scene(const StageContext& context, const BudgetOptions& 
   BudgetScene scene;
   scene.base.asked = options_of(context.recipe, context.out);
   const fs::path file = inputs_of(scene.base.asked, context.out).front();
-  scene.domain = read_domain(file);
+  scene.domain = std::make_shared<const Domain>(read_domain(file));
   const QuietThread quiet;  // the run itself has said all of it
-  scene.insisted = judge_inputs(context, scene.base.asked, file, scene.domain);
-  scene.base.places = scene.domain.places;
+  scene.insisted = judge_inputs(context, scene.base.asked, file, *scene.domain);
+  scene.base.places = scene.domain->places;
   scene.base.asked = with_places(std::move(scene.base.asked), scene.base.places);
-  scene.base.settled = settle_steps(scene.domain, settle_stiffness(scene.domain, scene.base.asked));
-  scene.variations = variations_of(scene.domain, scene.base, options);
+  Plan base = begin_plan(scene.domain, scene.base.asked);
+  settle(base);
+  scene.base.settled = std::move(base.options);
+  scene.variations = variations_of(*scene.domain, scene.base, options);
   for (Variation& one : own_changes(context.recipe, context.out, scene.base, options))
     scene.variations.push_back(std::move(one));
   for (Variation& one : scene.variations)
-    if (one.run.state == BudgetState::waiting) find_domain(one, {context.out}, scene.domain);
+    if (one.run.state == BudgetState::waiting) find_domain(one, {context.out}, *scene.domain);
   return scene;
 }
 
@@ -109,7 +110,7 @@ Budget fresh_budget(const StageContext& context, const BudgetScene& scene, const
                 .run = fact(run_facts(RunPaths(context.out).run), run_id),
                 .options = recipe::to_toml(options, "budget", false),
                 .runs = {},
-                .provenance = scene.domain.provenance};
+                .provenance = scene.domain->provenance};
   for (const Variation& one : scene.variations) budget.runs.push_back(one.run);
   const Facts own = made_by(context, scene.base.settled, scene.insisted);
   budget.provenance.insert(budget.provenance.end(), own.begin(), own.end());
@@ -148,7 +149,8 @@ void take_up_budget(const fs::path& file, const BudgetFlags& flags, Budget& budg
 InFlight budget_flight(const BudgetScene& scene, const BudgetOptions& options, const BudgetFlags& flags,
                        std::size_t runs) {
   const std::vector<AnyDevice> each = one_of_each(flags.on);
-  const MemberCost cost = cost_of_member(scene.domain, scene.base.settled, each.front(), false);
+  const MemberCost cost =
+      cost_of_member(draft_plan(scene.domain, scene.base.settled, Settle::done), each.front(), false);
   const double finer = std::max(1.0, std::pow(options.cell_factor, -3.0));
   return in_flight(static_cast<std::int64_t>(std::max<std::size_t>(runs, 1)), flags.at_a_time, finer * cost.bytes,
                    each);
@@ -186,7 +188,8 @@ void say_price(const StageContext& context, const BudgetScene& scene, const Budg
       continue;
     }
     stop_if_interrupted("trying the runs of the budget");
-    const MemberCost cost = cost_of_member(domain_of(one, scene.domain, {context.out}), one.options, device, true);
+    const Plan draft = draft_plan(domain_of(one, scene.domain, {context.out}), one.options, Settle::done);
+    const MemberCost cost = cost_of_member(draft, device, true);
     const double fewest = cost.fewest_steps * cost.step_seconds, all = cost.most_steps * cost.step_seconds;
     lines.push_back(
         fmt::format("  {:<14} {} to {}: {}", one.run.name, time_words(fewest), time_words(all), one.run.words));

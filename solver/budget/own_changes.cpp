@@ -10,10 +10,10 @@
 #include <fmt/ranges.h>
 
 #include "common/recipe/overrides.hpp"
-#include "solver/run/named_places.hpp"
+#include "solver/plan/named_places.hpp"
+#include "solver/plan/step_choice.hpp"
+#include "solver/plan/stiffness.hpp"
 #include "solver/run/run_inputs.hpp"
-#include "solver/run/step_choice.hpp"
-#include "solver/run/stiffness.hpp"
 
 namespace talus::solver {
 namespace {

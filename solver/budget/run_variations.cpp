@@ -36,8 +36,9 @@ class Noting {
     BudgetRun run = budget_.runs[place];
     const QuietThread quiet;
     run.reason = failure_of([&] {
-      const Domain domain = domain_of(variations_[place], plan_.domain, plan_.paths);
-      if (auto made = run_member(domain, variations_[place].options, device)) take(run, std::move(*made));
+      const auto domain = domain_of(variations_[place], plan_.domain, plan_.paths);
+      if (auto made = run_member(plan(domain, variations_[place].options, Settle::done), device))
+        take(run, std::move(*made));
     });
     if (!run.reason.empty()) run.state = BudgetState::failed;
     if (run.state == BudgetState::waiting) return;
@@ -74,9 +75,12 @@ class Noting {
 
 }  // namespace
 
-Domain domain_of(const Variation& variation, const Domain& base, const BudgetPaths& paths) {
-  Domain domain = variation.run.domain.empty() ? base : read_domain(paths.domain(variation.run.domain));
-  return variation.change_bed ? with_bed(std::move(domain), variation.change_bed) : domain;
+std::shared_ptr<const Domain> domain_of(const Variation& variation, const std::shared_ptr<const Domain>& base,
+                                        const BudgetPaths& paths) {
+  if (variation.run.domain.empty() && !variation.change_bed) return base;
+  Domain domain = variation.run.domain.empty() ? *base : read_domain(paths.domain(variation.run.domain));
+  if (variation.change_bed) domain = with_bed(std::move(domain), variation.change_bed);
+  return std::make_shared<const Domain>(std::move(domain));
 }
 
 bool run_variations(const std::vector<Variation>& variations, Budget& budget, const BudgetPlan& plan) {

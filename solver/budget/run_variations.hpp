@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "common/budget/budget.hpp"
@@ -14,14 +15,15 @@ namespace talus::solver {
 
 /// How the runs of a budget are made.
 struct BudgetPlan {
-  const Domain& domain;             ///< of the run itself
-  BudgetPaths paths;                ///< of the domains beside it
-  std::vector<AnyDevice> devices;   ///< one for each run at a time, with a stream of its own on a GPU
-  std::function<void()> save = {};  ///< called as a run has ended, while no other is being noted
+  std::shared_ptr<const Domain> domain;  ///< of the run itself
+  BudgetPaths paths;                     ///< of the domains beside it
+  std::vector<AnyDevice> devices;        ///< one for each run at a time, with a stream of its own on a GPU
+  std::function<void()> save = {};       ///< called as a run has ended, while no other is being noted
 };
 
 /// The domain on which a variation runs; it reads a file where that is one of its own. Throws DataError.
-Domain domain_of(const Variation& variation, const Domain& base, const BudgetPaths& paths);
+std::shared_ptr<const Domain> domain_of(const Variation& variation, const std::shared_ptr<const Domain>& base,
+                                        const BudgetPaths& paths);
 
 /// This function makes the runs of `budget` that wait, each as `variations` says at the same place, and notes what came
 /// of them. A run that ends by NumericalError or DataError of its scene is noted as failed, with its words. It returns

@@ -20,9 +20,9 @@
 #include "solver/ensemble/keep_runs.hpp"
 #include "solver/ensemble/member_cost.hpp"
 #include "solver/ensemble/run_members.hpp"
-#include "solver/run/plausible.hpp"
+#include "solver/plan/plausible.hpp"
+#include "solver/plan/warnings.hpp"
 #include "solver/run/run_inputs.hpp"
-#include "solver/run/warnings.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -242,8 +242,9 @@ Dependencies depends_of_ensemble(const StageContext& context, const EnsembleFlag
   return {{flags.members ? paths.counts(*flags.members) : paths.counts()}, inputs};
 }
 
-Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Domain& domain, const SolveOptions& base,
-                   const Facts& facts) {
+Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std::shared_ptr<const Domain>& base_domain,
+                   const SolveOptions& base, const Facts& facts) {
+  const Domain& domain = *base_domain;
   const auto begun = std::chrono::steady_clock::now();
   const Ensemble e = read_ensemble(context, flags, domain, base);
   const auto seconds = [&] {
@@ -255,10 +256,11 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Doma
     return {{"wall_time_s", seconds()}, {"members", std::to_string(e.part.count())}};
   }
   say_warnings_of_domain(domain);
-  const Members members(context.recipe, e.table, e.paths, domain, base);
+  const Members members(context.recipe, e.table, e.paths, base_domain, base);
   members.check();
   const std::vector<AnyDevice> each = one_of_each(flags.on);
-  const MemberCost cost = cost_of_member(domain, members.base(), each.front(), flags.plan);
+  const MemberCost cost =
+      cost_of_member(draft_plan(base_domain, members.base(), Settle::done), each.front(), flags.plan);
   const InFlight flight = in_flight(e.part.count(), flags.at_a_time, cost.bytes, each);
   log_info(fmt::format("{} members ({} to {}), {} at a time: {}", e.part.count(), e.part.first, e.part.end - 1,
                        flight.count, flight.reason));

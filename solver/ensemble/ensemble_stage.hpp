@@ -3,6 +3,7 @@
 // talus-solve for an ensemble: members.h5 and domain.vdb -> counts.h5.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -40,7 +41,7 @@ Dependencies depends_of_ensemble(const StageContext& context, const EnsembleFlag
 /// recipe itself, `facts` what is insisted on. It adds to the results and returns the facts for the used recipe. It
 /// throws NumericalError where too many members fail, Interrupted with what is finished left behind, RecipeError and
 /// DataError.
-Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const Domain& domain, const SolveOptions& base,
-                   const Facts& facts);
+Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std::shared_ptr<const Domain>& domain,
+                   const SolveOptions& base, const Facts& facts);
 
 }  // namespace talus::solver

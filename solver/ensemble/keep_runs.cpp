@@ -9,10 +9,8 @@
 
 #include "common/run/run_facts.hpp"
 #include "solver/ensemble/member_run.hpp"
-#include "solver/run/plausible.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
-#include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
 namespace {
@@ -38,15 +36,13 @@ void keep_runs(StageContext& context, const Members& members, const EnsembleOpti
       continue;
     }
     log_info(fmt::format("member {}: its whole run is kept", k));
-    std::optional<Member> own;
     std::optional<Simulation> simulation;
     Facts facts{{kept_member, mark}};
     std::string failure = failure_of([&] {
-      own = members.read(k);
-      const SolveOptions used = with_preset(own->options);
-      const Acceptance accepted = judged_before_run(own->domain, make_scene(own->domain, used), used);
-      facts.insert(facts.end(), accepted.facts().begin(), accepted.facts().end());
-      simulation.emplace(own->domain, own->options, device, files, mark);
+      const auto own = members.plan(k);
+      facts.insert(facts.begin(), own->domain->provenance.begin(), own->domain->provenance.end());
+      facts.insert(facts.end(), own->accepted.begin(), own->accepted.end());
+      simulation.emplace(own, device, files, mark);
     });
     if (failure.empty()) {
       make_folder(paths.run_folder(k));

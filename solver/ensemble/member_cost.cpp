@@ -6,8 +6,7 @@
 
 #include "common/stage/console.hpp"
 #include "solver/parallel/alone.hpp"
-#include "solver/run/trial.hpp"
-#include "solver/scene/make_scene.hpp"
+#include "solver/plan/trial.hpp"
 
 namespace talus::solver {
 namespace {
@@ -16,12 +15,11 @@ constexpr double trial_seconds = 0.5;
 
 }  // namespace
 
-MemberCost cost_of_member(const Domain& domain, const SolveOptions& base, const AnyDevice& device, bool timed) {
+MemberCost cost_of_member(const Plan& base, const AnyDevice& device, bool timed) {
   const QuietThread quiet;
   const Alone alone;
-  const Scene scene = make_scene(domain, base);
-  const Trial trial = try_steps(scene, base, device, timed ? trial_seconds : 0);
-  const StepCount count = count_steps(domain, scene, base, trial.step);
+  const Trial trial = try_steps(base, device, timed ? trial_seconds : 0);
+  const StepCount count = count_steps(base, trial.step);
   return {.bytes = static_cast<double>(trial.bytes),
           .step_seconds = trial.seconds,
           .fewest_steps = count.fewest,

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/domain/domain.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
+#include "solver/plan/plan.hpp"
 
 namespace talus::solver {
 
@@ -22,7 +21,7 @@ struct MemberCost {
 };
 
 /// This function tries the base of an ensemble, which its members are like; `timed`: half a second of its steps.
-MemberCost cost_of_member(const Domain& domain, const SolveOptions& base, const AnyDevice& device, bool timed);
+MemberCost cost_of_member(const Plan& base, const AnyDevice& device, bool timed);
 
 /// The lines of --plan: memory and time of `count` members, `in_flight` at a time.
 std::vector<std::string> lines_of(const MemberCost& cost, std::int64_t count, int in_flight);

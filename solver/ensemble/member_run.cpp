@@ -9,7 +9,6 @@
 #include "common/map/statistics.hpp"
 #include "common/run/mobility.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/run/plausible.hpp"
 #include "solver/run/recorders/stretch.hpp"
 #include "solver/run/run_loop.hpp"
 #include "solver/run/sanity.hpp"
@@ -83,10 +82,10 @@ MemberResult measured(const RunMaps& maps, double threshold) {
   return result;
 }
 
-std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& options, const AnyDevice& device) {
+std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, const AnyDevice& device) {
   RunTimer timer;
-  RunLoop loop(domain, options, device, HistoryUse::judged);
-  Facts accepted = judged_before_run(domain, loop.scene(), loop.options()).facts();
+  RunLoop loop(plan, device, HistoryUse::judged);
+  Facts accepted = plan->accepted;
   loop.start();
   MemberKeeper keeper;
   try {
@@ -103,7 +102,7 @@ std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& op
   MemberRun run;
   run.accepted = std::move(accepted);
   run.maps = final_maps(end, loop.stepper().solver().thickness());
-  run.result = measured(run.maps, options.map_threshold);
+  run.result = measured(run.maps, plan->options.map_threshold);
   const SlideVolumes volumes = slide_volumes(end, outflow);
   run.result.volume_released = volumes.released;
   run.result.volume_final = volumes.final;

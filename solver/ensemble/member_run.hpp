@@ -3,15 +3,15 @@
 // One member of an ensemble: a run whose maps and numbers are taken, and nothing written.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "common/domain/domain.hpp"
 #include "common/ensemble/counts.hpp"
 #include "common/error.hpp"
 #include "common/stage/identity.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
+#include "solver/plan/plan.hpp"
 
 namespace talus::solver {
 
@@ -38,10 +38,10 @@ std::string failure_of(const Body& body) {
   return {};
 }
 
-/// This function runs a member to its end. Its maps have the bits of run.h5 of the same domain and options run by
+/// This function runs a member to its end. Its maps have the bits of run.h5 of the same plan run by
 /// itself, on the CPU and where the options ask for deterministic sums. None: the process was interrupted. It throws
 /// NumericalError, and DataError and RecipeError where the scene is refused.
-std::optional<MemberRun> run_member(const Domain& domain, const SolveOptions& options, const AnyDevice& device);
+std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, const AnyDevice& device);
 
 /// The numbers of a member by its maps: run-out, areas, largest values. `threshold`: thickness from which a cell counts
 /// as covered [m].

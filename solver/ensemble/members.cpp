@@ -10,9 +10,8 @@
 
 #include "common/domain/scale_release.hpp"
 #include "common/ensemble/counts.hpp"
-#include "common/stage/console.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/run/named_places.hpp"
+#include "solver/plan/named_places.hpp"
 #include "solver/run/run_inputs.hpp"
 
 namespace talus::solver {
@@ -50,29 +49,35 @@ SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
   return options;
 }
 
-/// What is left to the program, settled by the base domain, and said.
-SettledOnce settle_once(const Domain& domain, const SolveOptions& base) {
+/// What the program settled for the base.
+SettledOnce settled_once(const Plan& base) {
   SettledOnce settled;
-  const SolveOptions stiff = settle_stiffness(domain, base);
-  if (leaves_stiffness(base)) settled.stiffness.emplace().modulus = stiff.material.youngs_modulus;
-  if (base.integrator != Integrator::automatic) return settled;
-  settled.steps = choose_steps(domain, stiff);
-  for (const std::string& reason : settled.steps->reasons) log_info("steps: " + reason);
+  const SolveOptions &asked = base.asked, &used = base.options;
+  if (leaves_stiffness(asked)) settled.stiffness.emplace().modulus = used.material.youngs_modulus;
+  if (asked.integrator == Integrator::automatic)
+    settled.steps = StepChoice{
+        .flow = used.flow, .cfl = used.cfl, .rests = used.integrator == Integrator::automatic, .reasons = {}};
   return settled;
+}
+
+/// The base's plan without its points; what was settled is logged.
+Plan settled_base(std::shared_ptr<const Domain> domain, const SolveOptions& options) {
+  Plan base = begin_plan(std::move(domain), options);
+  settle(base);
+  for (const std::string& reason : base.reasons) log_info(reason);
+  const std::string unkept = unkept_accuracy(*base.domain, base.asked, base.bound.line);
+  if (!unkept.empty()) log_warning(unkept);
+  return base;
 }
 
 }  // namespace
 
 Members::Members(const recipe::Recipe& recipe, const MemberTable& table, const EnsemblePaths& paths,
-                 const Domain& domain, const SolveOptions& base)
-    : recipe_(recipe),
-      table_(table),
-      paths_(paths),
-      domain_(domain),
-      settles_each_(varies_settling(table)),
-      settled_(settles_each_ ? SettledOnce{} : settle_once(domain, base)),
-      base_(settles_each_ ? settle_steps(domain, settle_stiffness(domain, base)) : settled_by(settled_, base)) {
-  if (const std::string unkept = unkept_accuracy(domain, base); !unkept.empty()) log_warning(unkept);
+                 std::shared_ptr<const Domain> domain, const SolveOptions& options)
+    : recipe_(recipe), table_(table), paths_(paths), domain_(std::move(domain)), settles_each_(varies_settling(table)) {
+  Plan base = settled_base(domain_, options);
+  if (!settles_each_) settled_ = settled_once(base);
+  base_ = std::move(base.options);
 }
 
 SolveOptions Members::options_of(std::int64_t member) const {
@@ -92,34 +97,31 @@ void Members::check() const {
   }
 }
 
-Domain Members::domain_of(std::int64_t member) const {
+std::shared_ptr<const Domain> Members::domain_of(std::int64_t member) const {
   if (const MemberWords* failure = table_.failure_of(member)) throw DataError({failure->words, "", ""});
   const bool own = table_.own_domain.at(static_cast<std::size_t>(member)) != 0;
-  Domain domain = own ? read_domain(paths_.domain(member)) : domain_;
-  if (own && !is_countable(domain.grid, table_, member, domain_.grid))
+  const MemberColumn* factor = table_.find(thickness_factor_key);
+  if (!own && factor == nullptr) return domain_;
+  Domain domain = own ? read_domain(paths_.domain(member)) : *domain_;
+  if (own && !is_countable(domain.grid, table_, member, domain_->grid))
     throw DataError(
         {paths_.domain(member).string() + (table_.slides ? ": its grid is not the window that members.h5 has for it"
                                                          : ": its grid is not that of the base domain"),
          "maps of several grids cannot be counted together",
          "Leave keys that change the grid as they are in all members, and run talus-preprocess again"});
-  if (const MemberColumn* factor = table_.find(thickness_factor_key); factor != nullptr)
-    scale_release(domain, factor->values.at(static_cast<std::size_t>(member)));
-  return domain;
+  if (factor != nullptr) scale_release(domain, factor->values.at(static_cast<std::size_t>(member)));
+  return std::make_shared<const Domain>(std::move(domain));
 }
 
-Member Members::read(std::int64_t member) const {
-  Member read{domain_of(member), {}};
+std::shared_ptr<const Plan> Members::plan(std::int64_t member) const {
+  const std::shared_ptr<const Domain> domain = domain_of(member);
+  SolveOptions options;
   {
     const std::lock_guard<std::mutex> one(reading_);
-    read.options = with_places(options_of(member), read.domain.places);
+    options = with_places(options_of(member), domain->places);
   }
-  if (!settles_each_) {
-    read.options = settled_by(settled_, std::move(read.options));
-    return read;
-  }
-  const QuietThread quiet;
-  read.options = settle_steps(read.domain, settle_stiffness(read.domain, std::move(read.options)));
-  return read;
+  if (settles_each_) return solver::plan(domain, options);
+  return solver::plan(domain, settled_by(settled_, std::move(options)), Settle::done);
 }
 
 }  // namespace talus::solver

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -13,8 +14,9 @@
 #include "common/ensemble/names.hpp"
 #include "common/recipe/recipe.hpp"
 #include "solver/options/solve.hpp"
-#include "solver/run/step_choice.hpp"
-#include "solver/run/stiffness.hpp"
+#include "solver/plan/plan.hpp"
+#include "solver/plan/step_choice.hpp"
+#include "solver/plan/stiffness.hpp"
 
 namespace talus::solver {
 
@@ -24,27 +26,21 @@ struct SettledOnce {
   std::optional<StepChoice> steps;
 };
 
-/// The domain and options of one member.
-struct Member {
-  Domain domain;
-  SolveOptions options;
-};
-
 /// The members of an ensemble. Its methods may be called by several threads at a time.
 class Members {
  public:
-  /// The constructor keeps references to recipe, table and base domain. `base` are the options of the recipe itself,
+  /// The constructor keeps references to recipe and table. `base` are the options of the recipe itself,
   /// and what is left to the program is settled for all members by them, unless a key that bears on it varies. It
   /// throws RecipeError where a varied key would have no effect.
-  Members(const recipe::Recipe& recipe, const MemberTable& table, const EnsemblePaths& paths, const Domain& domain,
-          const SolveOptions& base);
+  Members(const recipe::Recipe& recipe, const MemberTable& table, const EnsemblePaths& paths,
+          std::shared_ptr<const Domain> domain, const SolveOptions& base);
 
   /// The method reads every member's options. It throws RecipeError with the first member that the recipe does not
   /// allow.
   void check() const;
-  /// A member; it reads files. It throws DataError: a domain of its own that could not be made, is missing, or is on
-  /// another grid.
-  Member read(std::int64_t member) const;
+  /// The plan of a member; it reads files. It throws as plan() does, and DataError: a domain of its own that could not
+  /// be made, is missing, or is on another grid.
+  std::shared_ptr<const Plan> plan(std::int64_t member) const;
   /// The options of the base, settled as those of the members are.
   const SolveOptions& base() const { return base_; }
   /// Whether what is left to the program is settled for each member by itself.
@@ -52,12 +48,12 @@ class Members {
 
  private:
   SolveOptions options_of(std::int64_t member) const;
-  Domain domain_of(std::int64_t member) const;
+  std::shared_ptr<const Domain> domain_of(std::int64_t member) const;
 
   const recipe::Recipe& recipe_;
   const MemberTable& table_;
   EnsemblePaths paths_;
-  const Domain& domain_;
+  std::shared_ptr<const Domain> domain_;
   bool settles_each_;
   SettledOnce settled_;
   SolveOptions base_;

@@ -40,10 +40,7 @@ constexpr const char* at_the_edge =
 Outcome outcome_of(const Members& members, std::int64_t member, const AnyDevice& device, bool edge_fails) {
   const QuietThread quiet;
   Outcome outcome;
-  outcome.failure = failure_of([&] {
-    const Member own = members.read(member);
-    outcome.run = run_member(own.domain, own.options, device);
-  });
+  outcome.failure = failure_of([&] { outcome.run = run_member(members.plan(member), device); });
   if (edge_fails && outcome.run && is_at_edge(outcome.run->result)) {
     outcome.run.reset();
     outcome.failure = at_the_edge;

@@ -33,12 +33,19 @@ struct InflowSummary {
   double froude = 0;  ///< of the mean depth, normal to the ground [-]
 };
 
+/// The top of an inflow at its largest discharge: a place of the map, the surface of the flow there, and its speed.
+struct InflowTop {
+  double x = 0, y = 0, z = 0;  ///< map coordinates and elevation [m]
+  double speed = 0;            ///< along the ground [m/s]
+};
+
 /// All inflows of a scene, from its start to its end. The points' ids follow those of the scene's.
 struct Inflow {
   ParticleState points;                  ///< in the order of their entry
   std::vector<InflowPulse> pulses;       ///< by time
   std::vector<double> line_x, line_y;    ///< where each point passed its line [cells from the first node]
   std::vector<InflowSummary> summaries;  ///< of each inflow
+  std::vector<InflowTop> tops;           ///< of each inflow
 
   /// Whether anything enters.
   bool any() const { return !pulses.empty(); }

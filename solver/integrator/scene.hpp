@@ -21,7 +21,8 @@ namespace talus::solver {
 struct Scene {
   MapGrid map;
   GridShape grid;
-  ActiveCells active;  ///< of the grid at the start, around the points; layers above the bed
+  TerrainTables terrain;  ///< of that grid
+  ActiveCells active;     ///< of the grid at the start, around the points; layers above the bed
   ParticleState points;
   std::vector<double> load_volumes;  ///< volume of the points each load pulls at [m3]
   std::vector<Bed<double>> bed;      ///< of every column; empty where it is the same everywhere

@@ -12,7 +12,7 @@ namespace talus::solver {
 
 struct SolveOptions;
 
-/// The names of what is implausible in a scene (solver/run/plausible.hpp), as `accept` takes them.
+/// The names of what is implausible in a scene (solver/plan/plausible.hpp), as `accept` takes them.
 /// "torn-body" is met, if at all, as a run goes on.
 inline constexpr const char* torn_body = "torn-body";
 inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves",     "fast-waves",
@@ -22,7 +22,7 @@ inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves",     
 struct GaugeOptions {
   std::string name;
   double x = 0, y = 0;     ///< map coordinates [m]
-  std::string place = {};  ///< of the domain, whose points they are (solver/run/named_places.hpp); empty: x and y
+  std::string place = {};  ///< of the domain, whose points they are (solver/plan/named_places.hpp); empty: x and y
   /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };

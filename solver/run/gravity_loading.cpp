@@ -28,11 +28,11 @@ void take_strains(const ParticleState& loaded, const SolveOptions& options, Part
 
 }  // namespace
 
-void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice& device) {
+ParticleState loaded_by_gravity(const Scene& scene, const SolveOptions& options, const AnyDevice& device) {
   Scene resting = scene;
   resting.shaking = {};
   for (auto& component : resting.points.velocity) std::fill(component.begin(), component.end(), 0.0);
-  const SolverSettings settings = make_settings(options, scene.grid);
+  const SolverSettings settings = make_settings(options, resting.grid);
   const auto loader = make_solver(resting, for_gravity_loading(settings, options.gravity_loading_steps), device);
   loader->set_next_event(1);
   log_info(fmt::format("gravity is brought on first, in {} steps at least", options.gravity_loading_steps));
@@ -43,9 +43,11 @@ void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice&
     newton += batch.stats.newton;
     linear += batch.stats.linear;
   }
-  take_strains(loader->state().points, options, scene.points);
+  ParticleState start = scene.points;
+  take_strains(loader->state().points, options, start);
   log_info(fmt::format("gravity loading: {} steps, {} Newton and {} linear iterations", loader->clock().step, newton,
                        linear));
+  return start;
 }
 
 }  // namespace talus::solver

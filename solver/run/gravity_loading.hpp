@@ -10,8 +10,8 @@
 
 namespace talus::solver {
 
-/// This function gives the points of a scene the elastic state of the mass at rest under its own weight, held at its
-/// bed, in `gravity_loading_steps` quasi-static steps. It throws NumericalError when a step does not converge.
-void load_by_gravity(Scene& scene, const SolveOptions& options, const AnyDevice& device);
+/// The points of a scene with the elastic state of the mass at rest under its own weight, held at its bed, after
+/// `gravity_loading_steps` quasi-static steps. Throws NumericalError when a step does not converge.
+ParticleState loaded_by_gravity(const Scene& scene, const SolveOptions& options, const AnyDevice& device);
 
 }  // namespace talus::solver

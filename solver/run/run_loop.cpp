@@ -9,7 +9,6 @@
 
 #include "solver/run/gravity_loading.hpp"
 #include "solver/run/progress.hpp"
-#include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -24,20 +23,18 @@ std::vector<double> times_of(const Inflow& inflow) {
 
 }  // namespace
 
-RunLoop::RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device, HistoryUse use)
-    : domain_(domain),
-      options_(with_preset(options)),
-      scene_(make_scene(domain, options_)),
-      schedule_(options_, times_of(scene_.inflow)),
-      stepper_(scene_, options_, device),
-      history_(options_, scene_, use),
-      watch_(scene_, options_) {}
+RunLoop::RunLoop(std::shared_ptr<const Plan> plan, const AnyDevice& device, HistoryUse use)
+    : plan_(std::move(plan)),
+      schedule_(options(), times_of(scene().inflow)),
+      stepper_(scene(), options(), device),
+      history_(options(), scene(), use),
+      watch_(scene(), options()) {}
 
 void RunLoop::start() {
-  if (options_.gravity_loading_steps > 0 && scene_.points.size() > 0)
-    load_by_gravity(scene_, options_, stepper_.device());
-  stepper_.begin(first_state(scene_, make_settings(options_, scene_.grid).common));
-  for (const std::string& note : scene_.contacts.notes) log_info(note);
+  const bool loads = options().gravity_loading_steps > 0 && scene().points.size() > 0;
+  stepper_.begin(first_state(scene(), make_settings(options(), scene().grid).common,
+                             loads ? loaded_by_gravity(scene(), options(), stepper_.device()) : scene().points));
+  for (const std::string& note : scene().contacts.notes) log_info(note);
   memory_.initial_thickness = stepper_.solver().thickness();
 }
 
@@ -60,7 +57,7 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
     }
     keeper.pass_batch(batch);
     if (calm()) {
-      reason = fmt::format("kinetic energy below {:g} of its peak", options_.stop_kinetic_fraction);
+      reason = fmt::format("kinetic energy below {:g} of its peak", options().stop_kinetic_fraction);
       break;
     }
     if (left_empty()) {
@@ -78,8 +75,8 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
 bool RunLoop::let_in(double time) {
   const std::int64_t before = memory_.pulses;
   while (schedule_.pulse_due(time, memory_)) {
-    const InflowPulse& pulse = scene_.inflow.pulses[static_cast<std::size_t>(memory_.pulses)];
-    stepper_.add(scene_.inflow.points_of(pulse));
+    const InflowPulse& pulse = scene().inflow.pulses[static_cast<std::size_t>(memory_.pulses)];
+    stepper_.add(scene().inflow.points_of(pulse));
     ++memory_.pulses;
   }
   return memory_.pulses > before;
@@ -99,7 +96,7 @@ void RunLoop::count(const BatchReport& batch) {
   memory_.outflow_volume += batch.outflow_volume;
   memory_.outflow_count += batch.outflow_count;
   if (batch.clock.halt == failed)
-    refuse_lost_point(batch.clock, stepper_.solver().state().points, scene_.map, options_.cfl);
+    refuse_lost_point(batch.clock, stepper_.solver().state().points, scene().map, options().cfl);
   watch_.look(batch);
   if (batch.stats.newton == 0) return;
   memory_.newton += batch.stats.newton;
@@ -135,9 +132,9 @@ void RunLoop::put_frame(double time, RunKeeper& keeper) {
 }
 
 bool RunLoop::calm() const {
-  return options_.stop_kinetic_fraction > 0 && stepper_.time() >= scene_.shaking.end() &&
+  return options().stop_kinetic_fraction > 0 && stepper_.time() >= scene().shaking.end() &&
          !schedule_.expects_pulses(memory_) &&
-         history_.last("kinetic_J") < options_.stop_kinetic_fraction * memory_.peak_kinetic;
+         history_.last("kinetic_J") < options().stop_kinetic_fraction * memory_.peak_kinetic;
 }
 
 double RunLoop::mass_error() const {
@@ -148,9 +145,9 @@ double RunLoop::mass_error() const {
 }
 
 RunEnd RunLoop::end(const SolverState& state) const {
-  return {.domain = domain_,
-          .options = options_,
-          .scene = scene_,
+  return {.domain = *plan_->domain,
+          .options = options(),
+          .scene = scene(),
           .state = state,
           .initial_thickness = memory_.initial_thickness,
           .pulses = memory_.pulses};

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <string>
 
-#include "common/domain/domain.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
+#include "solver/plan/plan.hpp"
 #include "solver/run/products.hpp"
 #include "solver/run/recorders/checkpoint.hpp"
 #include "solver/run/recorders/history.hpp"
@@ -50,10 +50,8 @@ class RunKeeper {
 /// whoever keeps them.
 class RunLoop {
  public:
-  /// The constructor places the points and prepares the recorders; no step is taken. It keeps a reference to `domain`,
-  /// and throws RecipeError and DataError.
-  RunLoop(const Domain& domain, const SolveOptions& options, const AnyDevice& device,
-          HistoryUse use = HistoryUse::kept);
+  /// The constructor prepares the recorders; no step is taken. It throws RecipeError.
+  RunLoop(std::shared_ptr<const Plan> plan, const AnyDevice& device, HistoryUse use = HistoryUse::kept);
   RunLoop(const RunLoop&) = delete;
   RunLoop& operator=(const RunLoop&) = delete;
 
@@ -65,8 +63,9 @@ class RunLoop {
   /// throws NumericalError, and what the keeper throws.
   std::string step_to_end(RunKeeper& keeper, bool fresh);
 
-  const SolveOptions& options() const { return options_; }
-  const Scene& scene() const { return scene_; }
+  const Plan& plan() const { return *plan_; }
+  const SolveOptions& options() const { return plan_->options; }
+  const Scene& scene() const { return plan_->scene; }
   const Stepper& stepper() const { return stepper_; }
   Stepper& stepper() { return stepper_; }
   const History& history() const { return history_; }
@@ -89,9 +88,7 @@ class RunLoop {
   void put_frame(double time, RunKeeper& keeper);
   bool calm() const;
 
-  const Domain& domain_;
-  SolveOptions options_;
-  Scene scene_;
+  std::shared_ptr<const Plan> plan_;
   Schedule schedule_;
   Stepper stepper_;
   History history_;

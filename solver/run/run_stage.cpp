@@ -3,29 +3,21 @@
 #include "solver/run/run_stage.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "common/run/places.hpp"
-#include "common/stage/acceptance.hpp"
 #include "solver/parallel/bandwidth.hpp"
-#include "solver/run/advice.hpp"
-#include "solver/run/inflow_words.hpp"
-#include "solver/run/plan.hpp"
-#include "solver/run/plausible.hpp"
+#include "solver/plan/describe_plan.hpp"
+#include "solver/plan/plausible.hpp"
+#include "solver/plan/warnings.hpp"
 #include "solver/run/profile_report.hpp"
 #include "solver/run/recorders/stretch.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
-#include "solver/run/step_choice.hpp"
 #include "solver/run/stiffness_check.hpp"
-#include "solver/run/trial.hpp"
-#include "solver/run/warnings.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
 namespace {
@@ -39,68 +31,47 @@ void report_profile(const RunSummary& summary, const AnyDevice& device, const st
   write_text(out / "profile.csv", profile_csv(profile, copy));
 }
 
-/// One sentence on what will run: points, cells, first step.
-void log_plan(const Domain& domain, const SolveOptions& o, const AnyDevice& device) {
-  const Scene scene = make_scene(domain, o);
-  const TerrainTables terrain = make_terrain_tables(scene.grid);
-  const FirstWaves waves = first_waves(o);
-  const double step = std::min(o.cfl / first_rate(scene.grid, terrain, scene.points, waves, 0), o.largest_step);
-  const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
-  log_info(fmt::format("{} material points, {:.0f} m3; grid {} x {} columns of {:g} m, layers of {:g} m",
-                       scene.points.size(), volume, scene.grid.columns, scene.grid.rows, scene.grid.spacing,
-                       scene.grid.layer_height));
-  for (const InflowSummary& inflow : scene.inflow.summaries) log_info("inflow " + inflow_words(inflow));
-  const auto whole = [](double number) {
-    return fmt::format(fmt::runtime(number < 1e9 ? "{:.0f}" : "{:.3g}"), number);
-  };
-  log_info(fmt::format("wave speed {} m/s, first step {:.3g} s, about {} steps, on the {}", whole(waves.speed), step,
-                       whole(o.end_time / step + records_of(o)), device.is_gpu() ? "GPU" : "CPU"));
+/// This function logs what was settled, warnings and advice.
+void log_findings(const Plan& plan) {
+  say_warnings_of_domain(*plan.domain);
+  for (const std::string& text : plan.warnings) log_warning(text);
+  for (const auto& [name, words] : plan.advice) log_info("advice: " + words);
 }
 
-/// This function says what the scene is warned of. What is said here of the run goes into its results: the facts
-/// "warning.solve.N" and "advice.NAME".
-void log_warnings(Domain& domain, const SolveOptions& asked, const SolveOptions& o) {
-  say_warnings_of_domain(domain);
-  Facts said;
-  std::vector<std::string> texts = warnings(domain, o);
-  if (std::string unkept = unkept_accuracy(domain, asked); !unkept.empty()) texts.push_back(std::move(unkept));
-  for (const std::string& text : texts) {
-    log_warning(text);
-    said.emplace_back(fmt::format("warning.solve.{}", said.size()), text);
+/// The places of a run for its report: those of the domain without obstacles that the run leaves out, then sections,
+/// inflows and gauges.
+Facts places_of(const SolveOptions& o) {
+  Facts places;
+  for (const SectionOptions& s : o.sections) {
+    MapPlace place{"section " + s.name, {{}}};
+    for (std::size_t i = 0; i < s.x.size(); ++i) place.rings[0].push_back({s.x[i], s.y[i]});
+    places.push_back(place_fact(place));
   }
-  for (const auto& [name, words] : advice(domain, o)) {
-    log_info("advice: " + words);
-    said.emplace_back("advice." + name, words);
+  for (std::size_t n = 0; n < o.inflows.size(); ++n) {
+    const InflowOptions& i = o.inflows[n];
+    places.push_back(place_fact({"inflow " + inflow_name(i, n), {{{i.x[0], i.y[0]}, {i.x[1], i.y[1]}}}}));
   }
-  domain.provenance.insert(domain.provenance.end(), said.begin(), said.end());
+  for (const GaugeOptions& g : o.gauges) places.push_back(place_fact({"gauge " + g.name, {{{g.x, g.y}}}}));
+  return places;
 }
 
-/// Where the gauges of the run are, for its report; obstacles that the domain was made with and that the run leaves
-/// out are no longer among its places.
-void add_places(Domain& domain, const SolveOptions& o) {
-  std::erase_if(domain.provenance, [&](const auto& known) {
+/// What goes with the results: the facts of the domain, less its obstacles that the run leaves out, and those of the
+/// plan: what was accepted, places, "warning.solve.N" and "advice.NAME".
+Facts facts_of(const Plan& plan) {
+  const SolveOptions& o = plan.options;
+  Facts facts = plan.domain->provenance;
+  facts.insert(facts.end(), plan.accepted.begin(), plan.accepted.end());
+  std::erase_if(facts, [&](const auto& known) {
     return is_place(known.first) && std::none_of(o.obstacles.begin(), o.obstacles.end(), [&](const auto& obstacle) {
              return known.first == place_fact({"obstacle " + obstacle.name, {{{0, 0}}}}).first;
            });
   });
-  for (const SectionOptions& s : o.sections) {
-    MapPlace place{"section " + s.name, {{}}};
-    for (std::size_t i = 0; i < s.x.size(); ++i) place.rings[0].push_back({s.x[i], s.y[i]});
-    domain.provenance.push_back(place_fact(place));
-  }
-  for (std::size_t n = 0; n < o.inflows.size(); ++n) {
-    const InflowOptions& i = o.inflows[n];
-    domain.provenance.push_back(place_fact({"inflow " + inflow_name(i, n), {{{i.x[0], i.y[0]}, {i.x[1], i.y[1]}}}}));
-  }
-  for (const GaugeOptions& g : o.gauges) domain.provenance.push_back(place_fact({"gauge " + g.name, {{{g.x, g.y}}}}));
-}
-
-/// This function refuses what is implausible in a scene, and adds what is insisted on to the facts of its results.
-void judge(Domain& domain, const SolveOptions& o, bool is_varied) {
-  const Acceptance acceptance = judged_before_run(domain, make_scene(domain, o), o);
-  if (!is_varied) acceptance.warn_of_unmet();
-  const auto& facts = acceptance.facts();
-  domain.provenance.insert(domain.provenance.end(), facts.begin(), facts.end());
+  const Facts places = places_of(o);
+  facts.insert(facts.end(), places.begin(), places.end());
+  for (std::size_t n = 0; n < plan.warnings.size(); ++n)
+    facts.emplace_back(fmt::format("warning.solve.{}", n), plan.warnings[n]);
+  for (const auto& [name, words] : plan.advice) facts.emplace_back("advice." + name, words);
+  return facts;
 }
 
 }  // namespace
@@ -132,31 +103,33 @@ std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const 
   return flags.restart->empty() ? RunPaths(out).checkpoint : *flags.restart;
 }
 
-Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptions& options, const AnyDevice& device,
-                  Domain& domain, const Facts& facts) {
-  const SolveOptions settled = settle_steps(domain, options);
-  judge(domain, settled, flags.is_varied);
+Facts run_in_time(StageContext& context, const RunFlags& flags, const std::shared_ptr<const Plan>& plan,
+                  const AnyDevice& device, const Facts& insisted) {
+  const SolveOptions& options = plan->options;
+  if (!flags.is_varied) warn_of_unmet(accepted_before_run(options), plan->accepted);
   if (flags.plan) {
-    for (const std::string& text : plan(domain, settled, device)) log_info(text);
-    log_warnings(domain, options, settled);
+    const History recorded(options, plan->scene);  // refuses what cannot be recorded
+    for (const std::string& text : describe_plan(*plan, device)) log_info(text);
+    log_findings(*plan);
     return {};
   }
-  add_places(domain, settled);
-  log_plan(domain, settled, device);
-  log_warnings(domain, options, settled);
+  for (const std::string& text : summary_lines(*plan, device)) log_info(text);
+  log_findings(*plan);
   const RunPaths paths(context.out);
-  const std::string fingerprint = fingerprint_of(inputs_of(settled, context.out).front(), settled);
+  const std::string fingerprint = fingerprint_of(inputs_of(options, context.out).front(), options);
   if (flags.profile) device.profile().turn_on();
-  Simulation simulation(domain, settled, device, paths, fingerprint);
+  Simulation simulation(plan, device, paths, fingerprint);
   if (context.check_only) return {};
   take_up(simulation, flags, paths, fingerprint);
-  const RunSummary summary =
-      simulation.run(context.recipe.scene_name(), context.recipe.title(), made_by(context, settled, facts));
+  Facts facts = facts_of(*plan);
+  const Facts own = made_by(context, options, insisted);
+  facts.insert(facts.end(), own.begin(), own.end());
+  const RunSummary summary = simulation.run(context.recipe.scene_name(), context.recipe.title(), facts);
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
-  if (!flags.is_varied && accepts_torn_body(settled)) warn_of_unmet({torn_body}, summary.provenance);
+  if (!flags.is_varied && accepts_torn_body(options)) warn_of_unmet({torn_body}, summary.provenance);
   if (flags.profile) report_profile(summary, device, context.out);
-  if (settled.material.stiffness_check) check_stiffness(domain, settled, device, context, paths.run);
+  if (options.material.stiffness_check) check_stiffness(*plan, device, context, paths.run);
   context.results.push_back(paths.run);
   return facts_of(summary);
 }

@@ -4,13 +4,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
-#include "common/domain/domain.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
 #include "solver/run/simulation.hpp"
 
@@ -28,12 +27,11 @@ struct RunFlags {
 /// The checkpoint that the flags go on from; none where they begin.
 std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const std::filesystem::path& out);
 
-/// This function runs the slide and writes its results. The stiffness in `options` is settled. `facts` are what is
-/// insisted on; what is warned of is added to the facts of the domain. It adds to the context's results and returns the
-/// facts for the used recipe, none where nothing ran. It throws RecipeError where the scene is implausible,
-/// NumericalError, Interrupted with a checkpoint left behind, and DataError.
-Facts run_in_time(StageContext& context, const RunFlags& flags, const SolveOptions& options, const AnyDevice& device,
-                  Domain& domain, const Facts& facts);
+/// This function runs a plan and writes its results. `facts` are what was accepted of its inputs. It adds to the
+/// context's results and returns the facts for the used recipe, none where nothing ran. It throws NumericalError,
+/// Interrupted with a checkpoint left behind, RecipeError and DataError.
+Facts run_in_time(StageContext& context, const RunFlags& flags, const std::shared_ptr<const Plan>& plan,
+                  const AnyDevice& device, const Facts& facts);
 
 /// This function goes on from a checkpoint where the flags ask for it. One of this very run that they do not ask for is
 /// refused: hours of work would go without a word.

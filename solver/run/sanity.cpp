@@ -56,13 +56,10 @@ double speed_of_fall(const RunEnd& end) {
     return -(o.gravity[0] * x + o.gravity[1] * y + o.gravity[2] * z);
   };
   double top = -1e300, low = 1e300;
-  const TerrainTables terrain = make_terrain_tables(end.scene.grid);
-  for (const auto& [x, y, z] : positions(end.scene.map, end.scene.grid, terrain, end.scene.points))
-    top = std::max(top, height(x, y, z));
+  for (const auto& [x, y, z] : positions(end.scene, end.scene.points)) top = std::max(top, height(x, y, z));
   const ParticleState& entering = end.scene.inflow.points;
   double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
-  for (const auto& [x, y, z] : positions(end.scene.map, end.scene.grid, terrain, entering))
-    top = std::max(top, height(x, y, z));
+  for (const auto& [x, y, z] : positions(end.scene, entering)) top = std::max(top, height(x, y, z));
   for (std::size_t p = 0; p < entering.size(); ++p)
     start = std::max(start, std::hypot(entering.velocity[0][p], entering.velocity[1][p], entering.velocity[2][p]));
   const MapGrid& map = end.scene.map;

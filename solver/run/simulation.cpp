@@ -32,12 +32,11 @@ void remove_leftovers(const RunPaths& paths) {
   FrameStore(paths.frames).clear();
 }
 
-Simulation::Simulation(const Domain& domain, const SolveOptions& options, const AnyDevice& device, RunPaths paths,
+Simulation::Simulation(std::shared_ptr<const Plan> plan, const AnyDevice& device, RunPaths paths,
                        std::string fingerprint)
-    : domain_(domain),
-      paths_(std::move(paths)),
+    : paths_(std::move(paths)),
       marks_{std::move(fingerprint)},
-      loop_(domain, options, device),
+      loop_(std::move(plan), device),
       frames_(loop_.scene(), loop_.options(), paths_.frames, paths_.vdb_frames) {}
 
 void Simulation::resume(const std::filesystem::path& file) {
@@ -59,7 +58,7 @@ void Simulation::start() {
   loop_.start();
 }
 
-RunSummary Simulation::run(const std::string& scene, const std::string& title, const Facts& made_by) {
+RunSummary Simulation::run(const std::string& scene, const std::string& title, const std::optional<Facts>& facts) {
   timer_.start();
   const bool fresh = !loop_.stepper().begun();
   if (fresh) start();
@@ -74,9 +73,8 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title, c
   summary.scene = scene;
   summary.title = title;
   summary.stop_reason = marks_.stop_reason;
-  summary.provenance = domain_.provenance;
+  summary.provenance = facts.value_or(loop_.plan().domain->provenance);
   summary.provenance.emplace_back(run_id, marks_.id);
-  summary.provenance.insert(summary.provenance.end(), made_by.begin(), made_by.end());
   return finish(std::move(summary));
 }
 

@@ -7,12 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "common/domain/domain.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
 #include "solver/run/recorders/frames.hpp"
 #include "solver/run/run_loop.hpp"
@@ -40,20 +38,18 @@ struct RunMarks {
 /// A run with its files: frames, checkpoints, run.h5.
 class Simulation : private RunKeeper {
  public:
-  /// The constructor places the points and prepares the recorders; no step is taken and nothing written. `on` must be
-  /// cpu or gpu; `fingerprint` marks the checkpoints of this domain and these settings. It keeps a reference to
-  /// `domain`, and throws RecipeError and DataError.
-  Simulation(const Domain& domain, const SolveOptions& options, const AnyDevice& device, RunPaths paths,
-             std::string fingerprint);
+  /// The constructor prepares the recorders; no step is taken and nothing written. `fingerprint` marks the checkpoints
+  /// of this domain and these settings. It throws RecipeError and DataError.
+  Simulation(std::shared_ptr<const Plan> plan, const AnyDevice& device, RunPaths paths, std::string fingerprint);
 
   /// The method goes on from checkpoint.h5 instead of the start. It throws DataError, and then changes nothing.
   void resume(const std::filesystem::path& checkpoint);
 
   /// The method steps to the end and writes run.h5, with whether its numbers are sane. It throws NumericalError,
   /// DataError, and Interrupted (checkpoint left). An older run.h5 stays until the new one is whole, an older
-  /// checkpoint with its frames until this run has one of its own or is whole. `made_by` are facts that go with those
-  /// of the domain.
-  RunSummary run(const std::string& scene, const std::string& title, const Facts& made_by = {});
+  /// checkpoint with its frames until this run has one of its own or is whole. `facts` go with the results; those of
+  /// the domain do where none are given.
+  RunSummary run(const std::string& scene, const std::string& title, const std::optional<Facts>& facts = {});
 
  private:
   void put_frame(double time, std::int64_t number) override;
@@ -68,7 +64,6 @@ class Simulation : private RunKeeper {
   void write_run(const RunEnd& end, const RunSummary& summary);
   void measure(const RunEnd& end, RunSummary& summary) const;
 
-  const Domain& domain_;
   RunPaths paths_;
   RunMarks marks_;
   RunLoop loop_;

@@ -33,9 +33,7 @@ StepWatch::StepWatch(const Scene& scene, const SolveOptions& o)
       modulus_(o.material.youngs_modulus),
       cfl_(o.cfl),
       end_time_(o.end_time),
-      first_step_(
-          std::min(o.cfl / first_rate(scene.grid, make_terrain_tables(scene.grid), scene.points, first_waves(o), 0),
-                   o.largest_step)) {}
+      first_step_(explicit_step(scene, o, 0)) {}
 
 void StepWatch::look(const BatchReport& batch) {
   if (batch.clock.halt == failed) return;

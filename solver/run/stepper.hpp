@@ -12,7 +12,7 @@
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/any_device.hpp"
-#include "solver/run/integrator_choice.hpp"
+#include "solver/plan/integrator_choice.hpp"
 
 namespace talus::solver {
 

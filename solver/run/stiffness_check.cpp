@@ -11,16 +11,18 @@
 
 namespace talus::solver {
 
-void check_stiffness(const Domain& domain, SolveOptions o, const AnyDevice& device, const StageContext& context,
-                     const std::filesystem::path& first) {
+void check_stiffness(const Plan& first, const AnyDevice& device, const StageContext& context,
+                     const std::filesystem::path& run) {
+  SolveOptions o = first.options;
   o.material.youngs_modulus *= 2;
   for (PartOptions& part : o.parts) part.material.youngs_modulus *= 2;
   log_info(fmt::format("stiffness check: once more with {:.3g} Pa", o.material.youngs_modulus));
   const auto folder = context.out / "stiffness-check";
   std::filesystem::create_directories(folder);
   const RunPaths paths(folder);
-  Simulation(domain, o, device, paths, "").run(context.recipe.scene_name(), context.recipe.title());
-  const Run soft = read_run(first), stiff = read_run(paths.run);
+  Simulation(plan(first.domain, o, Settle::done), device, paths, "")
+      .run(context.recipe.scene_name(), context.recipe.title());
+  const Run soft = read_run(run), stiff = read_run(paths.run);
   double moved = 0, all = 0;
   for (std::size_t n = 0; n < soft.maps.deposit_thickness.size(); ++n) {
     const double a = soft.maps.deposit_thickness[n], b = stiff.maps.deposit_thickness[n];

@@ -83,17 +83,6 @@ Entrance entrance_of(const Domain& domain, const SolveOptions& options, std::siz
   return {place, std::move(hydrograph), std::move(line), std::move(section), std::move(summary)};
 }
 
-/// All inflows of a recipe.
-std::vector<Entrance> entrances(const Domain& domain, const SolveOptions& options) {
-  std::vector<Entrance> all;
-  if (options.inflows.empty()) return all;
-  const GridShape shape = grid_shape(domain, options);
-  const TerrainTables terrain = make_terrain_tables(shape);
-  for (std::size_t n = 0; n < options.inflows.size(); ++n)
-    all.push_back(entrance_of(domain, options, n, {shape, terrain}));
-  return all;
-}
-
 /// The elevation of the lowest ground [m], from which heights of sections are measured.
 double lowest_ground(const Domain& domain) {
   double lowest = std::numeric_limits<double>::infinity();
@@ -114,6 +103,17 @@ void require_countable(const Entrance& e, const InflowOptions& o, std::size_t pu
   require_memory(bytes_per_inflow_point * most, what, mend);
 }
 
+/// The top of an inflow over the deepest place of its line.
+InflowTop top_of(const Entrance& e, const Domain& domain) {
+  const auto& height = e.line.ground.height;
+  const auto deepest = static_cast<std::size_t>(std::min_element(height.begin(), height.end()) - height.begin());
+  const CellPlace& at = e.line.middles[deepest];
+  return {.x = domain.grid.west + (at[0] + 0.5) * domain.grid.cell,
+          .y = domain.grid.south + (at[1] + 0.5) * domain.grid.cell,
+          .z = lowest_ground(domain) + height[deepest] + e.summary.depth,
+          .speed = e.summary.speed};
+}
+
 /// The points of one inflow.
 Inflow make_one(const Domain& domain, const SolveOptions& options, std::size_t number, const InflowTerrain& terrain) {
   const InflowOptions& o = options.inflows[number];
@@ -130,6 +130,7 @@ Inflow make_one(const Domain& domain, const SolveOptions& options, std::size_t n
   Inflow inflow;
   for (const PulseTimes& pulse : times) seeder.add(pulse, e.place, inflow);
   inflow.summaries.push_back(e.summary);
+  inflow.tops.push_back(top_of(e, domain));
   return inflow;
 }
 
@@ -144,6 +145,7 @@ Inflow merged(const std::vector<Inflow>& all, std::size_t seeded) {
   for (const Inflow& one : all) {
     for (const InflowPulse& pulse : one.pulses) turns.push_back({&one, &pulse});
     merged.summaries.insert(merged.summaries.end(), one.summaries.begin(), one.summaries.end());
+    merged.tops.insert(merged.tops.end(), one.tops.begin(), one.tops.end());
   }
   std::stable_sort(turns.begin(), turns.end(),
                    [](const Turn& a, const Turn& b) { return a.pulse->time < b.pulse->time; });
@@ -169,27 +171,6 @@ Inflow make_inflow(const Domain& domain, const SolveOptions& options, const Grid
   for (std::size_t n = 0; n < options.inflows.size(); ++n)
     all.push_back(make_one(domain, options, n, {shape, terrain}));
   return merged(all, domain.points.size());
-}
-
-std::vector<InflowSummary> inflow_summaries(const Domain& domain, const SolveOptions& options) {
-  std::vector<InflowSummary> summaries;
-  for (const Entrance& e : entrances(domain, options)) summaries.push_back(e.summary);
-  return summaries;
-}
-
-std::vector<InflowTop> inflow_tops(const Domain& domain, const SolveOptions& options) {
-  std::vector<InflowTop> tops;
-  const double datum = lowest_ground(domain);
-  for (const Entrance& e : entrances(domain, options)) {
-    const auto& height = e.line.ground.height;
-    const auto deepest = static_cast<std::size_t>(std::min_element(height.begin(), height.end()) - height.begin());
-    const CellPlace& at = e.line.middles[deepest];
-    tops.push_back({.x = domain.grid.west + (at[0] + 0.5) * domain.grid.cell,
-                    .y = domain.grid.south + (at[1] + 0.5) * domain.grid.cell,
-                    .z = datum + height[deepest] + e.summary.depth,
-                    .speed = e.summary.speed});
-  }
-  return tops;
 }
 
 }  // namespace talus::solver

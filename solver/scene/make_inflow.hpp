@@ -18,16 +18,4 @@ namespace talus::solver {
 Inflow make_inflow(const Domain& domain, const SolveOptions& options, const GridShape& shape,
                    const TerrainTables& terrain);
 
-/// What each inflow does at most; throws as make_inflow().
-std::vector<InflowSummary> inflow_summaries(const Domain& domain, const SolveOptions& options);
-
-/// Where an inflow enters at its largest discharge: a place of the map, the surface of the flow there, and its speed.
-struct InflowTop {
-  double x = 0, y = 0, z = 0;  ///< map coordinates and elevation [m]
-  double speed = 0;            ///< along the ground [m/s]
-};
-
-/// The top of every inflow; throws as make_inflow().
-std::vector<InflowTop> inflow_tops(const Domain& domain, const SolveOptions& options);
-
 }  // namespace talus::solver

@@ -147,6 +147,12 @@ ParticleState place_points(const Domain& domain, const SolveOptions& options, co
   return s;
 }
 
+/// With "auto" the same for both integrators: a node of next to no mass contributes next to nothing to a change.
+double lowest_weighed(const SolveOptions& options) {
+  const StepAbilities steps = abilities_of(options.integrator);
+  return steps.obey_cfl ? explicit_lowest_weighed : steps.carry_inertia ? newmark_lowest_weighed : 0;
+}
+
 }  // namespace
 
 GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
@@ -158,22 +164,30 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
   shape.mapping = options.mapping;
   shape.ground = options.ground_contact;
   shape.quadratic = options.shape == ShapeKind::quadratic;
-  // With "auto" the same for both integrators: what has next to no weight contributes next to nothing to a change.
-  const StepAbilities steps = abilities_of(options.integrator);
-  shape.lowest_weighed = steps.obey_cfl ? explicit_lowest_weighed : steps.carry_inertia ? newmark_lowest_weighed : 0;
+  shape.lowest_weighed = lowest_weighed(options);
   shape.terrain = domain.terrain.values;
   return shape;
 }
 
-Scene make_scene(const Domain& domain, const SolveOptions& options) {
-  static_assert(ActiveCells::side == block_side, "domain.vdb and the solver's grid have blocks of the same columns");
+Scene begin_scene(const Domain& domain, const SolveOptions& options) {
   Scene scene;
   scene.map = domain.grid;
   scene.grid = grid_shape(domain, options);
-  const TerrainTables terrain = make_terrain_tables(scene.grid);
+  scene.terrain = make_terrain_tables(scene.grid);
+  scene.inflow = make_inflow(domain, options, scene.grid, scene.terrain);
+  scene.shaking = read_shaking(options.shaking);
+  return scene;
+}
+
+Scene make_scene(const Domain& domain, const SolveOptions& options) {
+  return finish_scene(domain, options, begin_scene(domain, options));
+}
+
+Scene finish_scene(const Domain& domain, const SolveOptions& options, Scene scene) {
+  static_assert(ActiveCells::side == block_side, "domain.vdb and the solver's grid have blocks of the same columns");
+  scene.grid.lowest_weighed = lowest_weighed(options);
   scene.active = domain.active ? *domain.active : active_cells(domain.grid, domain.layer_height, domain.points);
-  scene.points = place_points(domain, options, scene.grid, terrain, scene.active);
-  scene.inflow = make_inflow(domain, options, scene.grid, terrain);
+  scene.points = place_points(domain, options, scene.grid, scene.terrain, scene.active);
   scene.release_names = domain.release_names;
   for (const InflowSummary& inflow : scene.inflow.summaries) scene.release_names.push_back(inflow.name);
   std::vector<Fault> faults;
@@ -186,13 +200,14 @@ Scene make_scene(const Domain& domain, const SolveOptions& options) {
   check_bed(domain, options, faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
   scene.bed = make_bed(domain, options);
-  scene.contacts = make_contact_points(domain.grid, scene.grid, terrain, make_obstacles(options.obstacles));
-  scene.shaking = read_shaking(options.shaking);
+  scene.contacts = make_contact_points(domain.grid, scene.grid, scene.terrain, make_obstacles(options.obstacles));
   return scene;
 }
 
-std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
-                                             const ParticleState& s) {
+std::vector<std::array<double, 3>> positions(const Scene& scene, const ParticleState& s) {
+  const MapGrid& map = scene.map;
+  const GridShape& shape = scene.grid;
+  const TerrainTables& terrain = scene.terrain;
   std::vector<std::array<double, 3>> result(s.size());
   for (std::size_t p = 0; p < s.size(); ++p) {
     const double xi = s.cell[0][p] + s.offset[0][p], eta = s.cell[1][p] + s.offset[1][p];
@@ -205,6 +220,11 @@ std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape
 
 FirstWaves first_waves(const SolveOptions& options) {
   return {fastest_wave(options), !abilities_of(options.flow_integrator()).solve_columns};
+}
+
+double explicit_step(const Scene& scene, const SolveOptions& options, double speed) {
+  const double rate = first_rate(scene.grid, scene.terrain, scene.points, first_waves(options), speed);
+  return std::min(options.cfl / rate, options.largest_step);
 }
 
 double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,

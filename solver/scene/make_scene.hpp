@@ -16,12 +16,18 @@ namespace talus::solver {
 /// ground, or outside the active cells that the domain's file names.
 Scene make_scene(const Domain& domain, const SolveOptions& options);
 
+/// The part of a scene that does not depend on how it is stepped: grid, terrain tables, inflows, shaking. It throws
+/// RecipeError and DataError.
+Scene begin_scene(const Domain& domain, const SolveOptions& options);
+
+/// That scene with its points, bed and contacts, for steps as the options settle them; it throws as make_scene().
+Scene finish_scene(const Domain& domain, const SolveOptions& options, Scene begun);
+
 /// The shape of the background grid as the domain and the recipe give it.
 GridShape grid_shape(const Domain& domain, const SolveOptions& options);
 
 /// The positions of points in map coordinates [m].
-std::vector<std::array<double, 3>> positions(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
-                                             const ParticleState& points);
+std::vector<std::array<double, 3>> positions(const Scene& scene, const ParticleState& points);
 
 /// The waves that bound the first step.
 struct FirstWaves {
@@ -36,5 +42,8 @@ FirstWaves first_waves(const SolveOptions& options);
 /// [1/s].
 double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,
                   const FirstWaves& waves, double speed);
+
+/// The explicit step of a scene whose mass moves at `speed` [m/s], by the cfl of the options [s].
+double explicit_step(const Scene& scene, const SolveOptions& options, double speed);
 
 }  // namespace talus::solver

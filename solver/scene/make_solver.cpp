@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/scene/make_solver.hpp"
 
+#include <utility>
+
 #include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/implicit/make_implicit_solver.hpp"
 #include "solver/integrator/scene.hpp"
@@ -13,8 +15,12 @@
 namespace talus::solver {
 
 SolverState first_state(const Scene& scene, const IntegratorSettings& settings) {
+  return first_state(scene, settings, scene.points);
+}
+
+SolverState first_state(const Scene& scene, const IntegratorSettings& settings, ParticleState points) {
   SolverState state;
-  state.points = scene.points;
+  state.points = std::move(points);
   const auto cells = scene.map.count();
   for_each_running_map([&](const RunningMap& map, auto& values) { values.assign(cells, map.start); }, state.maps);
   const StepSettings& steps = settings.steps;
@@ -22,9 +28,8 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings) 
   state.clock.largest_step = steps.largest;
   state.clock.column_spacing = scene.grid.spacing;
   state.clock.keeps_budget = settings.energy_budget ? 1 : 0;
-  const TerrainTables terrain = make_terrain_tables(scene.grid);
-  const auto rate = static_cast<float>(
-      first_rate(scene.grid, terrain, scene.points, {steps.fastest_wave, !(steps.kappa > 0)}, steps.initial_speed));
+  const auto rate = static_cast<float>(first_rate(scene.grid, scene.terrain, state.points,
+                                                  {steps.fastest_wave, !(steps.kappa > 0)}, steps.initial_speed));
   atomic_max_positive(&state.clock.rate_bits, rate);
   return state;
 }

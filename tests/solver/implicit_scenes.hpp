@@ -73,7 +73,7 @@ struct Cantilever {
   /// Mean deflection of the last points [m], which lie 1/8 m inside.
   double deflection(const Solver& solver, const Scene& scene) const {
     const ParticleState s = solver.state().points;
-    const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+    const auto x = positions(scene, s);
     double tip = 0, volume = 0;
     for (std::size_t p = 0; p < s.size(); ++p) {
       if (domain.points.x[static_cast<std::size_t>(s.id[p])] < 9.7) continue;

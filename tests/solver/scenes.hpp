@@ -134,7 +134,7 @@ struct Centre {
 /// Volume-weighted centre and mean speed of the points.
 inline Centre centre(const Solver& solver, const Scene& scene) {
   const ParticleState s = solver.state().points;
-  const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+  const auto x = positions(scene, s);
   Centre c;
   double volume = 0, vx = 0, vy = 0, vz = 0;
   for (std::size_t p = 0; p < s.size(); ++p) {

@@ -12,17 +12,13 @@ namespace talus::solver {
 
 FrameRecorder::FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store,
                              std::filesystem::path vdb_folder)
-    : scene_(scene),
-      options_(options),
-      terrain_(make_terrain_tables(scene.grid)),
-      vdb_folder_(std::move(vdb_folder)),
-      store_(std::move(store)) {}
+    : scene_(scene), options_(options), vdb_folder_(std::move(vdb_folder)), store_(std::move(store)) {}
 
 PointFrame FrameRecorder::point_frame(double time, const ParticleState& s) const {
   const auto materials = make_materials<double>(options_, scene_.grid.spacing, scene_.grid.layer_height);
   PointFrame frame;
   frame.time = time;
-  frame.position = positions(scene_.map, scene_.grid, terrain_, s);
+  frame.position = positions(scene_, s);
   for (std::size_t p = 0; p < s.size(); ++p) {
     frame.velocity.push_back({static_cast<float>(s.velocity[0][p]), static_cast<float>(s.velocity[1][p]),
                               static_cast<float>(s.velocity[2][p])});

@@ -42,7 +42,6 @@ class FrameRecorder {
 
   const Scene& scene_;
   const SolveOptions& options_;
-  TerrainTables terrain_;
   std::filesystem::path vdb_folder_;
   std::string run_id_ = {};
   FrameStore store_;

@@ -61,7 +61,7 @@ GaugeRecorder::GaugeRecorder(const SolveOptions& options, const Scene& scene)
       densities_{options.material.density} {
   check_places(options.gauges, scene);
   for (const PartOptions& part : options.parts) densities_.push_back(part.material.density);
-  const TerrainTables terrain = make_terrain_tables(scene.grid);
+  const TerrainTables& terrain = scene.terrain;
   for (const GaugeOptions& g : options.gauges) {
     const double xi = in_cells(g.x, scene.map.west, scene.map.cell);
     const double eta = in_cells(g.y, scene.map.south, scene.map.cell);

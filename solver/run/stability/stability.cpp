@@ -45,10 +45,8 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 }
 
 /// The ways of points between two states, by id [m].
-std::vector<double> ways(const Scene& scene, const TerrainTables& ground, const ParticleState& from,
-                         const ParticleState& to) {
-  const auto before = positions(scene.map, scene.grid, ground, from),
-             after = positions(scene.map, scene.grid, ground, to);
+std::vector<double> ways(const Scene& scene, const ParticleState& from, const ParticleState& to) {
+  const auto before = positions(scene, from), after = positions(scene, to);
   std::vector<std::array<double, 3>> place(scene.points.size());
   for (std::size_t p = 0; p < from.size(); ++p) place[static_cast<std::size_t>(from.id[p])] = before[p];
   std::vector<double> way(scene.points.size(), 0.0);
@@ -87,7 +85,7 @@ StabilitySearch::StabilitySearch(const Domain& domain, const SolveOptions& optio
       device_(device) {
   options_.integrator = Integrator::quasi_static;  // the grid of statics
   scene_ = make_scene(domain_, options_);
-  seeds_ = positions(scene_.map, scene_.grid, make_terrain_tables(scene_.grid), scene_.points);
+  seeds_ = positions(scene_, scene_.points);
 }
 
 Stability StabilitySearch::run() {
@@ -194,7 +192,7 @@ Failure StabilitySearch::fail(double factor) {
   log_detail(
       fmt::format("let go with strength / {:.4g}: kinetic energy {:.3g} J after {:.3g} s, {:.3g} J after {:.3g} s",
                   factor, half, 0.5 * failure.time, end, failure.time));
-  const std::vector<double> way = ways(scene_, solver->ground(), held_.points, solver->state().points);
+  const std::vector<double> way = ways(scene_, held_.points, solver->state().points);
   failure.way = way_of_what_moves(way, scene_.points.volume);
   for (const double own : way) failure.shares.push_back(failure.way > 0 ? own / failure.way : 0);
   return failure;
@@ -202,7 +200,7 @@ Failure StabilitySearch::fail(double factor) {
 
 /// How far the farthest point is from its seed [m].
 double StabilitySearch::farthest(const SolverState& state) const {
-  const auto now = positions(scene_.map, scene_.grid, make_terrain_tables(scene_.grid), state.points);
+  const auto now = positions(scene_, state.points);
   double way = 0;
   for (std::size_t p = 0; p < now.size(); ++p)
     way = std::max(way, distance(now[p], seeds_[static_cast<std::size_t>(state.points.id[p])]));

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "solver/plan/warnings.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stability/stability_products.hpp"
-#include "solver/run/warnings.hpp"
 
 namespace talus::solver {
 namespace {

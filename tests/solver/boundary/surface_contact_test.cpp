@@ -129,7 +129,7 @@ TEST_P(SurfaceContactTest, wall_takes_the_momentum_of_what_it_stops) {
     const double left = solver->energies().momentum.x, given = solver->obstacle_impulses().at(0).x;
     double farthest = 0;
     const ParticleState s = solver->state().points;
-    for (const auto& x : positions(scene.map, scene.grid, solver->ground(), s)) farthest = std::max(farthest, x[0]);
+    for (const auto& x : positions(scene, s)) farthest = std::max(farthest, x[0]);
     std::printf("  %s: came with %.6g, left with %.6g, wall was given %.6g; farthest %.2f m\n", name_of(integrator),
                 came, left, given, farthest);
     EXPECT_NEAR(came - left, given, (integrator == Integrator::newmark ? scheme_of(o).tolerance : 1e-9) * came);
@@ -184,7 +184,7 @@ TEST_P(SurfaceContactTest, sand_stays_before_a_wall_thinner_than_a_cell) {
     const auto solver = make_solver(scene, o, GetParam());
     run_to(*solver, 5);
     const ParticleState s = solver->state().points;
-    const auto where = positions(scene.map, scene.grid, solver->ground(), s);
+    const auto where = positions(scene, s);
     double beyond = 0, all = 0, farthest = 0;
     for (std::size_t p = 0; p < s.size(); ++p) {
       all += s.volume[p];

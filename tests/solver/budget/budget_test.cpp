@@ -8,10 +8,11 @@
 #include "solver/budget/own_changes.hpp"
 #include "solver/budget/run_variations.hpp"
 #include "solver/ensemble/member_run.hpp"
+#include "solver/plan/step_choice.hpp"
+#include "solver/plan/stiffness.hpp"
 #include "solver/run/simulation.hpp"
-#include "solver/run/step_choice.hpp"
-#include "solver/run/stiffness.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
+#include "tests/solver/plans.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -27,7 +28,13 @@ struct BudgetScene {
   BudgetScene(const std::string& text, Domain made)
       : recipe(scratch.write("recipe.toml", text)), domain(std::move(made)), options(budget_of(recipe)) {
     base.asked = options_of(recipe, scratch.folder());
-    base.settled = settle_steps(domain, settle_stiffness(domain, base.asked));
+    base.settled = settled(base.asked);
+  }
+
+  SolveOptions settled(const SolveOptions& asked) const {
+    Plan plan = begun(domain, asked);
+    settle(plan);
+    return plan.options;
   }
 
   std::vector<Variation> variations() const {
@@ -42,7 +49,8 @@ struct BudgetScene {
     for (const Variation& one : variations) budget.runs.push_back(one.run);
     std::vector<AnyDevice> devices;
     for (int k = 0; k < at_a_time; ++k) devices.push_back(make_device(on));
-    EXPECT_TRUE(run_variations(variations, budget, {domain, {scratch.folder()}, devices}));
+    EXPECT_TRUE(
+        run_variations(variations, budget, {std::make_shared<const Domain>(domain), {scratch.folder()}, devices}));
     return budget;
   }
 };
@@ -68,11 +76,11 @@ void expect_runs_by_hand(const BudgetScene& scene, On on) {
     SCOPED_TRACE(run.name);
     ASSERT_EQ(run.state, BudgetState::done) << run.reason;
     const SolveOptions asked = options_of(scene.recipe.with(run.values), scene.scratch.folder());
-    const SolveOptions by_hand = settle_steps(scene.domain, settle_stiffness(scene.domain, asked));
+    const SolveOptions by_hand = scene.settled(asked);
     const auto folder = scene.scratch / run.name;
     std::filesystem::create_directories(folder);
     const RunPaths files(folder);
-    Simulation(scene.domain, by_hand, make_device(on), files, "").run("heap", "heap");
+    Simulation(drafted(scene.domain, by_hand), make_device(on), files, "").run("heap", "heap");
     const talus::Run alone = read_run(files.run);
     EXPECT_EQ(differing(run.deposit.values, alone.maps.deposit_thickness), 0u);
     EXPECT_EQ(differing(run.peak_thickness.values, alone.maps.peak_thickness), 0u);
@@ -156,7 +164,7 @@ Domain block() {
 
 TEST_P(BudgetRuns, move_a_block_as_far_as_the_doubt_of_its_friction_does) {
   const BudgetScene scene(block_recipe(), block());
-  const auto own = run_member(scene.domain, scene.base.settled, make_device(GetParam()));
+  const auto own = run_member(drafted(scene.domain, scene.base.settled), make_device(GetParam()));
   ASSERT_TRUE(own);
   const double way = own->result.centre_travel, mu = std::tan(friction_deg * degree);
   const Budget budget = scene.run(scene.variations(), GetParam());
@@ -228,7 +236,7 @@ TEST(BudgetVariations, change_rasters_of_the_bed_where_they_have_values) {
   domain.bed.emplace_back("friction_angle_deg", angle);
   const BudgetScene scene(heap_recipe(), domain);
   for (const Variation& one : scene.variations()) {
-    const Domain other = domain_of(one, scene.domain, {scene.scratch.folder()});
+    const Domain other = *domain_of(one, std::make_shared<const Domain>(scene.domain), {scene.scratch.folder()});
     const double of_map = other.bed[0].second.values[5];
     const double expected = one.run.name == "friction-less"   ? std::atan(0.9 * std::tan(20 * degree)) / degree
                             : one.run.name == "friction-more" ? std::atan(1.1 * std::tan(20 * degree)) / degree

@@ -59,7 +59,7 @@ class BlocksOnInclines : public InEachPlace {
 
   EnsembleCounts counted(const ThresholdOptions& thresholds) const {
     const SolveOptions base = options_of(recipe_, scratch_.folder());
-    const Members members(recipe_, table_, {scratch_.folder()}, domain_, base);
+    const Members members(recipe_, table_, {scratch_.folder()}, std::make_shared<const Domain>(domain_), base);
     EnsembleScene scene;
     scene.grid = domain_.grid;
     scene.terrain = scene.before = scene.release_thickness = domain_.terrain.values;

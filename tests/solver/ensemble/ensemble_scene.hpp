@@ -65,7 +65,7 @@ struct SmallEnsemble {
         base(options_of(recipe, scratch.folder())),
         paths{scratch.folder()} {}
 
-  Members members() const { return {recipe, table, paths, domain, base}; }
+  Members members() const { return {recipe, table, paths, std::make_shared<const Domain>(domain), base}; }
 
   /// Counts of a part, in which nothing is counted yet.
   EnsembleCounts counts(const MemberRange& part) const {

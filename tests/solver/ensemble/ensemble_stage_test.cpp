@@ -40,7 +40,7 @@ class EnsembleStage : public ::testing::Test {
   Facts run(const EnsembleFlags& flags) {
     StageContext context = this->context();
     const Domain domain = read_domain(out() / "domain.vdb");
-    return run_ensemble(context, flags, domain, options_of(context.recipe, out()), {});
+    return run_ensemble(context, flags, std::make_shared<const Domain>(domain), options_of(context.recipe, out()), {});
   }
 
   test::Scratch scratch_;

@@ -5,8 +5,9 @@
 
 #include "common/stage/machine.hpp"
 #include "solver/ensemble/member_cost.hpp"
-#include "solver/run/trial.hpp"
+#include "solver/plan/trial.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
+#include "tests/solver/plans.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -33,7 +34,7 @@ TEST(InFlightMembers, are_no_more_than_memory_has_room_for) {
 
 TEST(MemberCost, is_that_of_a_run) {
   const SmallEnsemble ensemble;
-  const MemberCost cost = cost_of_member(ensemble.domain, ensemble.base, make_device(On::cpu), true);
+  const MemberCost cost = cost_of_member(*drafted(ensemble.domain, ensemble.base), make_device(On::cpu), true);
   EXPECT_GT(cost.bytes, 1e5);
   EXPECT_GT(cost.step_seconds, 0);
   EXPECT_LE(cost.fewest_steps, cost.most_steps);

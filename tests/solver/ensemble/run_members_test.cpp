@@ -12,6 +12,7 @@
 #include "solver/run/simulation.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
+#include "tests/solver/plans.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -42,15 +43,15 @@ void expect_members_as_alone(const SmallEnsemble& ensemble, On on) {
   const Members members = ensemble.members();
   for (std::int64_t k = 0; k < ensemble.table.count; ++k) {
     SCOPED_TRACE(k);
-    Member own = members.read(k);
-    const auto run = run_member(own.domain, own.options, make_device(on));
+    const auto own = members.plan(k);
+    const auto run = run_member(own, make_device(on));
     ASSERT_TRUE(run);
     const RunPaths files(ensemble.scratch / std::to_string(k));
     std::filesystem::create_directories(ensemble.scratch / std::to_string(k));
     // Alone: the recipe with the member's values, on all threads.
     const SolveOptions options =
         options_of(ensemble.recipe.with(ensemble.table.values_of(k, "solve.")), ensemble.scratch.folder());
-    Simulation(own.domain, options, make_device(on), files, "").run("heap", "heap");
+    Simulation(drafted(*own->domain, options), make_device(on), files, "").run("heap", "heap");
     const talus::Run alone = read_run(files.run);
     for (const MapField& field : map_fields) {
       if (field.optional) continue;
@@ -78,8 +79,7 @@ double share_of_positive(std::vector<double> values, double q) {
 
 TEST_P(RunMembers, gives_the_99th_percentile_beside_every_largest_value) {
   const SmallEnsemble ensemble;
-  Member own = ensemble.members().read(0);
-  const auto run = run_member(own.domain, own.options, make_device(GetParam()));
+  const auto run = run_member(ensemble.members().plan(0), make_device(GetParam()));
   ASSERT_TRUE(run);
   const MemberResult& r = run->result;
   EXPECT_DOUBLE_EQ(r.p99_thickness, share_of_positive(run->maps.peak_thickness, 0.99));
@@ -103,8 +103,8 @@ TEST_P(RunMembers, lets_in_what_each_member_alone_would_let_in) {
   const Members members = ensemble.members();
   const double heap = 64;
   for (std::int64_t k = 0; k < 3; ++k) {
-    Member own = members.read(k);
-    const auto run = run_member(own.domain, own.options, make_device(GetParam()));
+    const auto own = members.plan(k);
+    const auto run = run_member(own, make_device(GetParam()));
     ASSERT_TRUE(run);
     EXPECT_NEAR(run->result.volume_released, heap + 9 * table.columns[0].values[static_cast<std::size_t>(k)], 1e-9);
   }
@@ -210,9 +210,9 @@ TEST(Members, scale_the_release_of_domains_of_their_own_too) {
   const auto volume = [](const Domain& d) {
     return std::accumulate(d.points.volume.begin(), d.points.volume.end(), 0.0);
   };
-  EXPECT_NEAR(volume(members.read(1).domain), 0.8 * volume(own), 1e-9 * volume(own));
-  EXPECT_NEAR(volume(members.read(2).domain), 1.25 * volume(ensemble.domain), 1e-9 * volume(own));
-  EXPECT_EQ(members.read(1).domain.terrain.values, own.terrain.values);
+  EXPECT_NEAR(volume(*members.plan(1)->domain), 0.8 * volume(own), 1e-9 * volume(own));
+  EXPECT_NEAR(volume(*members.plan(2)->domain), 1.25 * volume(ensemble.domain), 1e-9 * volume(own));
+  EXPECT_EQ(members.plan(1)->domain->terrain.values, own.terrain.values);
   const auto thick = [&] {
     Domain scaled = read_domain(ensemble.paths.domain(1));  // its mask names the cells around its own points
     scale_release(scaled, 5);
@@ -222,7 +222,7 @@ TEST(Members, scale_the_release_of_domains_of_their_own_too) {
   own.grid.west += 1;
   own.terrain.grid = own.before.grid = own.release_thickness.grid = own.grid;
   write_domain(ensemble.paths.domain(1), own);
-  EXPECT_THROW(members.read(1), DataError) << "maps of another grid cannot be added up";
+  EXPECT_THROW(members.plan(1), DataError) << "maps of another grid cannot be added up";
 }
 
 TEST(Members, name_the_member_that_the_recipe_does_not_allow) {
@@ -244,7 +244,7 @@ TEST(Members, settle_what_is_left_to_the_program_once) {
   const SmallEnsemble ensemble(table, "integrator = \"auto\"\naccuracy = 0.02\n");
   const Members members = ensemble.members();
   EXPECT_FALSE(members.settles_each());
-  const SolveOptions first = members.read(0).options, last = members.read(5).options;
+  const SolveOptions first = members.plan(0)->options, last = members.plan(5)->options;
   EXPECT_EQ(first.material.youngs_modulus, last.material.youngs_modulus);
   EXPECT_EQ(first.flow_integrator(), last.flow_integrator());
   EXPECT_EQ(first.cfl, last.cfl);

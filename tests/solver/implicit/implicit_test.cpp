@@ -22,7 +22,7 @@ struct ColumnResult {
 ColumnResult measure_column(const Solver& solver, const Scene& scene, const Domain& d, const SolveOptions& o,
                             double weight, double height) {
   const ParticleState s = solver.state().points;
-  const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+  const auto x = positions(scene, s);
   const auto m = make_material<double>(o.material);
   ColumnResult r;
   double sum = 0;
@@ -220,7 +220,7 @@ TEST_P(Implicit, gives_the_same_displacement_by_every_linear_solver) {
       ParticleState s = solver->state().points;
       std::vector<double> z(s.size());
       for (std::size_t p = 0; p < s.size(); ++p) {
-        z[static_cast<std::size_t>(s.id[p])] = positions(scene.map, scene.grid, solver->ground(), s)[p][2];
+        z[static_cast<std::size_t>(s.id[p])] = positions(scene, s)[p][2];
       }
       if (kind == 0) {
         reference = z;

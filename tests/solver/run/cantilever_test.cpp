@@ -35,7 +35,7 @@ struct SoftBeam {
   /// Drop of the lower corner of the free end [m]: of the points there, which lie 1/16 m inside.
   double drop(const Solver& solver, const Scene& scene) const {
     const ParticleState s = solver.state().points;
-    const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+    const auto x = positions(scene, s);
     double sum = 0, volume = 0;
     for (std::size_t p = 0; p < s.size(); ++p) {
       const auto seed = static_cast<std::size_t>(s.id[p]);

@@ -94,7 +94,7 @@ TEST_P(Conservation, keeps_momentum_and_mass_of_a_shaken_body) {
 /// Angular momentum about the centre, from points and their affine velocity.
 Vec3<double> angular_momentum(const Solver& solver, const Scene& scene, double density) {
   const ParticleState s = solver.state().points;
-  const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+  const auto x = positions(scene, s);
   const Centre c = centre(solver, scene);
   Vec3<double> total;
   for (std::size_t p = 0; p < s.size(); ++p) {

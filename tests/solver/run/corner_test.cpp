@@ -20,7 +20,7 @@ class Corner : public InEachPlace {
   /// The height above the slope of the lowest point in the cell beside the wall [m].
   static double lowest(const Solver& solver, const Scene& scene) {
     double least = 1e9;
-    for (const auto& [x, y, z] : positions(scene.map, scene.grid, solver.ground(), solver.state().points))
+    for (const auto& [x, y, z] : positions(scene, solver.state().points))
       if (x > foot - 0.5) least = std::min(least, z + tilt * x);
     return least;
   }

@@ -27,7 +27,7 @@ TEST(GravityLoading, gives_the_points_the_stress_of_the_mass_at_rest) {
     }
   }
   Scene scene = make_scene(d, o);
-  load_by_gravity(scene, o, CpuDevice::make());
+  scene.points = loaded_by_gravity(scene, o, CpuDevice::make());
   const ParticleState& s = scene.points;
   // Confined compression: sigma_zz = -rho g (H - z) gives the volume strain sigma_zz / M.
   const Material<double> m = make_material<double>(o.material);

@@ -42,7 +42,7 @@ SolveOptions pushed_block() {
 
 double centre_of_block(const Scene& scene, const Solver& solver) {
   double sum = 0;
-  const auto points = positions(scene.map, scene.grid, solver.ground(), solver.state().points);
+  const auto points = positions(scene, solver.state().points);
   for (const auto& p : points) sum += p[0];
   return sum / static_cast<double>(points.size());
 }
@@ -75,7 +75,7 @@ TEST(HandOver, from_rest_by_newmark_to_a_slide_by_columns_keeps_the_way_of_a_rig
   fill(d, {6, 12, 4, 8, 0, 2});
   const SolveOptions o = pushed_block();
   Scene scene = make_scene(d, o);
-  load_by_gravity(scene, o, CpuDevice::make());
+  scene.points = loaded_by_gravity(scene, o, CpuDevice::make());
   constexpr double end = 10;
   ::testing::internal::CaptureStderr();
   const HandedOver found = run_pushed(scene, o, end);

@@ -190,7 +190,7 @@ TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C
       }
       EXPECT_NEAR(solver->energies().volume + left, released, 1e-12 * released);
       const ParticleState s = solver->state().points;
-      const auto places = positions(scene.map, scene.grid, solver->ground(), s);
+      const auto places = positions(scene, s);
       for (std::size_t p = 0; p < s.size(); ++p) {
         const double ground_here =
             solver->ground().datum +
@@ -285,7 +285,7 @@ TEST_P(HardCases, a_slab_that_has_settled_does_not_creep) {
   o.implicit.step = 2;
   o.gravity_loading_steps = 4;
   Scene scene = make_scene(d, o);
-  load_by_gravity(scene, o, make_device(GetParam()));
+  scene.points = loaded_by_gravity(scene, o, make_device(GetParam()));
   const auto solver = make_solver(scene, o, GetParam());
   run_to(*solver, 60);
   const Centre start = centre(*solver, scene);

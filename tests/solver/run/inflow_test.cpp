@@ -12,6 +12,7 @@
 #include "solver/run/run_loop.hpp"
 #include "solver/run/sanity.hpp"
 #include "solver/scene/hydrograph.hpp"
+#include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -103,7 +104,7 @@ TEST_P(InflowRun, keeps_the_volume_of_the_hydrograph_in_every_shape_precision_an
     o.base.law = FrictionLaw::coulomb;
     o.implicit.step = 0.05;
     const Hydrograph hydrograph(o.inflows[0].times, o.inflows[0].discharges);
-    RunLoop loop(flume.domain, o, make_device(GetParam()));
+    RunLoop loop(drafted(flume.domain, o), make_device(GetParam()));
     loop.start();
     Watcher watcher(loop);
     EXPECT_EQ(loop.step_to_end(watcher, true), "end of the simulated time");
@@ -141,7 +142,7 @@ TEST_P(InflowRun, brings_the_momentum_that_was_stated) {
   flume.options.base.law = FrictionLaw::none;
   flume.options.integrator = Integrator::explicit_;
   flume.options.end_time = 4;
-  RunLoop loop(flume.domain, flume.options, make_device(GetParam()));
+  RunLoop loop(drafted(flume.domain, flume.options), make_device(GetParam()));
   loop.start();
   Watcher watcher(loop);
   loop.step_to_end(watcher, true);
@@ -178,7 +179,7 @@ TEST_P(InflowRun, takes_the_depth_and_speed_of_the_closed_form) {
     o.end_time = 60;
     o.sections = {{"near", {14.3, 14.3}, {0, 12}}, {"far", {90.7, 90.7}, {0, 12}}};
     o.gauges = {{"far", 90, 6}};
-    RunLoop loop(flume.domain, o, make_device(GetParam()));
+    RunLoop loop(drafted(flume.domain, o), make_device(GetParam()));
     loop.start();
     Watcher watcher(loop);
     loop.step_to_end(watcher, true);
@@ -222,14 +223,14 @@ TEST_P(InflowRun, goes_on_from_the_middle_of_the_hydrograph_bit_for_bit) {
     o.deterministic = true;
     o.end_time = 9;
     o.sections = {{"near", {14.3, 14.3}, {0, 12}}};
-    RunLoop unbroken(flume.domain, o, make_device(GetParam()));
+    RunLoop unbroken(drafted(flume.domain, o), make_device(GetParam()));
     unbroken.start();
     Watcher watcher(unbroken, 4.0);
     unbroken.step_to_end(watcher, true);
     ASSERT_TRUE(watcher.state);
     ASSERT_GT(watcher.memory.pulses, 0);
     ASSERT_LT(watcher.memory.pulses, std::ssize(unbroken.scene().inflow.pulses));
-    RunLoop resumed(flume.domain, o, make_device(GetParam()));
+    RunLoop resumed(drafted(flume.domain, o), make_device(GetParam()));
     resumed.resume(*watcher.state, watcher.memory);
     Watcher nothing(resumed);
     resumed.step_to_end(nothing, false);
@@ -248,7 +249,7 @@ TEST_P(InflowRun, enters_beside_a_release_with_a_material_of_its_own) {
   part.material = flume.options.material;
   part.material.density = 1500;
   flume.options.parts = {part};
-  RunLoop loop(flume.domain, flume.options, make_device(GetParam()));
+  RunLoop loop(drafted(flume.domain, flume.options), make_device(GetParam()));
   loop.start();
   Watcher watcher(loop);
   loop.step_to_end(watcher, true);

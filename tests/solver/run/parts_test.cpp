@@ -17,6 +17,7 @@
 #include "solver/run/simulation.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
+#include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -49,7 +50,7 @@ class Parts : public InEachPlace {
   /// Mean height of the points of each release.
   static std::array<double, 2> heights(const Solver& solver, const Scene& scene) {
     const ParticleState s = solver.state().points;
-    const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+    const auto x = positions(scene, s);
     std::array<double, 2> sum{}, count{};
     for (std::size_t p = 0; p < s.size(); ++p) {
       const auto r = static_cast<std::size_t>(s.release[p]);
@@ -174,7 +175,7 @@ talus::Run run_erodible(bool slide, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   const Domain domain = erodible_ground(slide);
   const SolveOptions options = erodible_options();
-  Simulation simulation(domain, options, CpuDevice::make(), paths, "");
+  Simulation simulation(drafted(domain, options), CpuDevice::make(), paths, "");
   simulation.run("erodible", "Erodible ground");
   return read_run(paths.run);
 }

@@ -157,7 +157,7 @@ double way_of_middle(HeldSlab& slab, double speed, On on) {
   const auto solver = make_solver(scene, slab.options, on);
   const auto middle = [&] {
     const ParticleState s = solver->state().points;
-    const auto x = positions(scene.map, scene.grid, solver->ground(), s);
+    const auto x = positions(scene, s);
     double sum = 0, count = 0;
     for (std::size_t p = 0; p < s.size(); ++p) {
       if (std::abs(x[p][0] - 0.5 * (HeldSlab::from + HeldSlab::to)) > 4) continue;
@@ -251,7 +251,7 @@ TEST_P(FlowOnIncline, of_grains_rises_as_they_dilate) {
       row_of[static_cast<std::size_t>(first.id[p])] = static_cast<std::size_t>(height_of(first, p) / row_height);
     run_to(*solver, 4.5);
     const ParticleState points = solver->state().points;
-    const auto x = positions(scene.map, scene.grid, solver->ground(), points);
+    const auto x = positions(scene, points);
     const double middle = centre(*solver, scene).x;
     const auto rows = static_cast<std::size_t>(2 * slab.layers);
     std::vector<double> volume(rows), count(rows), height(rows);

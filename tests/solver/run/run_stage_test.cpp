@@ -29,7 +29,7 @@ class RunStage : public ::testing::Test {
   StageContext context() const { return {recipe::Recipe(recipe_file_), out(), false, "test", {}}; }
   SolveOptions options() const { return options_of(recipe::Recipe(recipe_file_), out()); }
   Facts run(StageContext& context, const RunFlags& flags, const SolveOptions& options) {
-    return run_in_time(context, flags, options, make_device(On::cpu), domain_, {});
+    return run_in_time(context, flags, plan(domain_, options), make_device(On::cpu), {});
   }
 
   test::Scratch scratch_;
@@ -81,7 +81,7 @@ TEST_F(RunStage, runs_once_more_and_twice_as_stiff_to_check_the_stiffness) {
   StageContext context = this->context();
   run(context, {}, options());
   ASSERT_FALSE(fs::exists(out() / "stiffness-check"));
-  check_stiffness(domain_, options(), make_device(On::cpu), context, out() / "run.h5");
+  check_stiffness(*plan(domain_, options()), make_device(On::cpu), context, out() / "run.h5");
   const talus::Run soft = read_run(out() / "run.h5"), stiff = read_run(out() / "stiffness-check" / "run.h5");
   // Steps follow the speed of waves: the root of two, less what the speed of the heap takes.
   EXPECT_GT(static_cast<double>(stiff.summary.steps), 1.2 * static_cast<double>(soft.summary.steps));

@@ -71,9 +71,7 @@ class Separated : public InEachPlace {
           before(solver->energies()) {
       run_to(*solver, time);
     }
-    std::vector<std::array<double, 3>> places() const {
-      return positions(scene.map, scene.grid, solver->ground(), solver->state().points);
-    }
+    std::vector<std::array<double, 3>> places() const { return positions(scene, solver->state().points); }
     double mass() const { return 2000 * before.volume; }
   };
   static constexpr double time = 0.8;  ///< in which the middle of the slab comes 10 m past the edge [s]

@@ -66,7 +66,7 @@ class ShakingGround : public InEachPlace {
     SolveOptions o = options(integrator);
     o.base.friction_angle = plane.friction;
     Scene scene = make_scene(block_on(plane, integrator), o);
-    load_by_gravity(scene, o, make_device(GetParam()));
+    scene.points = loaded_by_gravity(scene, o, make_device(GetParam()));
     scene.shaking = shaking_of(record);
     const auto solver = make_solver(scene, o, GetParam());
     const Centre before = centre(*solver, scene);
@@ -183,7 +183,7 @@ TEST_P(ShakingGround, does_the_work_that_the_energy_budget_says) {
     const ShakenPlane plane{15, 25};
     o.base.friction_angle = plane.friction;
     Scene scene = make_scene(block_on(plane, integrator), o);
-    load_by_gravity(scene, o, make_device(GetParam()));
+    scene.points = loaded_by_gravity(scene, o, make_device(GetParam()));
     scene.shaking = shaking_of(test::irregular(5, 1.5, 0.05, 7));
     const auto solver = make_solver(scene, o, GetParam());
     const auto held = [&] {

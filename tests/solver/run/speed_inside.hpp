@@ -16,7 +16,7 @@ namespace talus::solver::testing {
 inline double speed_inside(const Solver& solver, const Scene& scene, double slope) {
   const double angle = slope * std::numbers::pi / 180;
   const ParticleState s = solver.state().points;
-  const auto x = positions(scene.map, scene.grid, solver.ground(), s);
+  const auto x = positions(scene, s);
   const double middle = centre(solver, scene).x;
   double sum = 0, volume = 0;
   for (std::size_t p = 0; p < s.size(); ++p) {

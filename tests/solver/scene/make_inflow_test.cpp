@@ -164,7 +164,7 @@ TEST(MakeInflow, refuses_what_cannot_be_with_numbers) {
 
 TEST(MakeInflow, knows_where_it_enters_highest) {
   const Domain d = channel();
-  const std::vector<InflowTop> tops = inflow_tops(d, with_inflow());
+  const std::vector<InflowTop> tops = inflow_of(d, with_inflow()).tops;
   ASSERT_EQ(tops.size(), 1u);
   EXPECT_NEAR(tops[0].x, 20, 1e-9);
   EXPECT_NEAR(tops[0].y, 30, 4);  // anywhere on the level bed

@@ -42,7 +42,7 @@ struct Sides {
 
 Sides sides_of(const Solver& solver, const Scene& scene, double width) {
   const ParticleState points = solver.shown();
-  const auto places = positions(scene.map, scene.grid, solver.ground(), points);
+  const auto places = positions(scene, points);
   Sides sides;
   for (std::size_t p = 0; p < points.size(); ++p) {
     const double x = places[p][0], y = places[p][1];

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plan of a run: everything that is known before the first step, made once.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/domain/domain.hpp"
+#include "common/stage/identity.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/options/solve.hpp"
+#include "solver/plan/advice.hpp"
+#include "solver/plan/energy_line.hpp"
+
+namespace talus::solver {
+
+/// A run before its first step. It is made once by plan() and shared, unchanged, by all that run, describe or write it.
+struct Plan {
+  std::shared_ptr<const Domain> domain;
+  SolveOptions asked;                     ///< of the recipe, preset resolved
+  SolveOptions options;                   ///< with stiffness and steps as they are settled
+  Scene scene;                            ///< grid, terrain tables, points, inflows, contacts
+  SpeedBound bound;                       ///< of the speed of a flow
+  std::vector<std::string> reasons = {};  ///< a line each on what was settled
+  Facts accepted = {};                    ///< implausible numbers that the recipe accepts
+  std::vector<std::string> warnings = {};
+  Advice advice = {};
+};
+
+/// Whether plan() settles stiffness and steps that the options leave to the program, or takes them as they are.
+enum class Settle { as_asked, done };
+
+/// The plan of a run of these options on this domain. Throws RecipeError (no such part, load or gauge), DataError (a
+/// point outside the ground; implausible numbers that the recipe does not accept).
+std::shared_ptr<const Plan> plan(std::shared_ptr<const Domain> domain, const SolveOptions& options,
+                                 Settle settle = Settle::as_asked);
+/// The same with a domain that is moved or copied.
+std::shared_ptr<const Plan> plan(Domain domain, const SolveOptions& options, Settle settle = Settle::as_asked);
+
+/// The part of a plan that settling needs: the scene without its points, and the bound of the speed. Throws as plan().
+Plan begin_plan(std::shared_ptr<const Domain> domain, const SolveOptions& options);
+
+/// This function settles stiffness and steps of a plan that was begun.
+void settle(Plan& plan);
+
+/// A plan whose findings are not looked for: what its steps take can be tried, be its numbers plausible or not. Throws
+/// as plan() does of the scene.
+Plan draft_plan(std::shared_ptr<const Domain> domain, const SolveOptions& options, Settle settle = Settle::as_asked);
+
+/// The options as solve.used.toml notes them: those asked for, with the modulus that was settled.
+SolveOptions noted_options(const Plan& plan);
+
+}  // namespace talus::solver

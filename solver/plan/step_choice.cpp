@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/plan/step_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "solver/options/hindrances.hpp"
+#include "solver/plan/integrator_choice.hpp"
+
+namespace talus::solver {
+namespace {
+
+// Shares of the CFL step that keep to an accuracy, over that accuracy, and their limits
+// (docs/decisions/0009-choice-of-integrator.md).
+constexpr double explicit_per_accuracy = 80, rough_per_accuracy = 50, columns_per_accuracy = 100;
+constexpr double most_explicit = 0.8, most_rough = 0.5, least_cfl = 0.1;
+constexpr double roughest = 0.01;  // bend of the ground over the thickness up to which long steps keep to it
+constexpr double kept_on_rough_ground = 0.05;  // accuracy down to which steps keep to it beyond that
+
+/// A way of stepping a flow: the share of the CFL step that it may take, and 1 over the CFL step [1/s].
+struct Way {
+  Integrator integrator;
+  double cfl, rate;
+  /// Its work, in explicit steps a simulated second.
+  double work() const { return work_of(integrator, {.steps = 1}) * rate / cfl; }
+};
+
+/// What of a scene decides how long its steps are.
+struct Pace {
+  double speed;  ///< about what a flow has when it is fast [m/s]
+  double steep;  ///< steepness() of the ground that layers follow
+};
+
+/// The rate at which waves and a flow cross cells, and layers unless columns are solved for (T11) [1/s].
+double crossing_rate(const Domain& domain, const SolveOptions& o, Integrator integrator, const Pace& pace) {
+  const double across = 1 / domain.grid.cell, up = 1 / domain.layer_height;
+  const double by_layers = abilities_of(integrator).solve_columns ? 0 : pace.steep * up * up;
+  return fastest_wave(o) * std::sqrt(2 * across * across + by_layers) + pace.speed * (2 * across + up);
+}
+
+Way way_of(const Domain& domain, const SolveOptions& o, Integrator integrator, const Pace& pace, bool rough) {
+  const bool columns = abilities_of(integrator).solve_columns;
+  const double most = columns ? longest_by_columns(o) : rough ? most_rough : most_explicit;
+  const double per_accuracy = columns ? columns_per_accuracy : rough ? rough_per_accuracy : explicit_per_accuracy;
+  return {integrator, o.accuracy ? std::clamp(per_accuracy * *o.accuracy, least_cfl, most) : o.cfl,
+          crossing_rate(domain, o, integrator, pace)};
+}
+
+/// What is in the way of columns in this scene, in words; empty: nothing. `bend`: of the ground, over the thickness.
+std::string against_columns(const SolveOptions& o, double bend) {
+  if (const Hindrance beyond = beyond_columns(o)) return beyond.key + ": " + beyond.reason;
+  if (bend > roughest)
+    return fmt::format(
+        "within a cell the ground bends by {:.2g} of the thickness of what is released, and above {:g} steps by "
+        "columns "
+        "lose it",
+        bend, roughest);
+  return {};
+}
+
+std::string comparison(const Way& taken, const Way& other) {
+  const auto words = [](const Way& way) {
+    return fmt::format("{} steps of {:g} CFL", way.integrator == Integrator::explicit_ ? "explicit" : "column-implicit",
+                       way.cfl);
+  };
+  return fmt::format("a flow takes {}: the work of {:.3g} explicit steps a simulated second, {} that of {:.3g}",
+                     words(taken), taken.work(), words(other), other.work());
+}
+
+}  // namespace
+
+StepChoice choose_steps(const Domain& domain, const SolveOptions& o, const SpeedBound& bound) {
+  const Pace pace{.speed = bound.speed / 2,
+                  .steep = o.mapping == Mapping::terrain_following ? steepness(domain, bound.line) : 1};
+  const double bend = bend_over_thickness(domain, bound.line);
+  const Way by_points = way_of(domain, o, Integrator::explicit_, pace, bend > roughest),
+            by_columns = way_of(domain, o, Integrator::column_implicit, pace, false);
+  StepChoice choice;
+  if (const std::string why_not = against_columns(o, bend); !why_not.empty()) {
+    choice.cfl = by_points.cfl;
+    choice.reasons.push_back(fmt::format("a flow takes explicit steps of {:g} CFL: {}", choice.cfl, why_not));
+  } else {
+    const bool columns = by_columns.work() < by_points.work();
+    const Way& taken = columns ? by_columns : by_points;
+    choice.flow = taken.integrator;
+    choice.cfl = taken.cfl;
+    choice.reasons.push_back(comparison(taken, columns ? by_points : by_columns));
+  }
+  const Hindrance moving = beyond_rest(o);
+  choice.rests = !moving;
+  choice.reasons.push_back(moving ? fmt::format("no implicit steps at rest: {}, {}", moving.key, moving.reason)
+                                  : "newmark's steps where all is at rest and they take less work");
+  return choice;
+}
+
+std::string unkept_accuracy(const Domain& domain, const SolveOptions& o, const EnergyLine& line) {
+  if (!o.accuracy || *o.accuracy >= kept_on_rough_ground) return {};
+  const double bend = bend_over_thickness(domain, line);
+  if (bend <= roughest) return {};
+  return fmt::format(
+      "[solve] accuracy = {:g} is not kept on this ground: within a cell it bends by {:.2g} of the thickness of what "
+      "is released, and beyond {:g} of it explicit steps of a tenth of the CFL step, instead of a quarter, moved 5 to "
+      "8 % of the deposits measured. Footprints and speeds hold better; accuracy = {:g} asks for no more than can be "
+      "had",
+      *o.accuracy, bend, roughest, kept_on_rough_ground);
+}
+
+SolveOptions with_steps(SolveOptions o, const StepChoice& choice) {
+  o.flow = choice.flow;
+  o.cfl = choice.cfl;
+  o.accuracy.reset();
+  if (!choice.rests) o.integrator = choice.flow;
+  return o;
+}
+
+SolveOptions settle_steps(const Domain& domain, SolveOptions o, const SpeedBound& bound,
+                          std::vector<std::string>& reasons) {
+  if (o.integrator != Integrator::automatic) return o;
+  const StepChoice choice = choose_steps(domain, o, bound);
+  for (const std::string& reason : choice.reasons) reasons.push_back("steps: " + reason);
+  return with_steps(std::move(o), choice);
+}
+
+}  // namespace talus::solver

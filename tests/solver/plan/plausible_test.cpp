@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What hardly any slide does is refused with its numbers, unless the recipe insists on it by name.
+#include "solver/plan/plausible.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "tests/solver/plans.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// A block on a slope of 27 degrees, some metres thick.
+Domain plausible_block(double thickness) {
+  Domain d = ground(40, 24, 2.0, 1.0, [](double x, double) { return 50 - 0.5 * x; });
+  fill(d, {10, 22, 12, 36, 0, thickness});
+  for (int row = 6; row < 18; ++row) {
+    for (int column = 5; column < 11; ++column) d.release_thickness.at(column, row) = thickness;
+  }
+  return d;
+}
+
+/// The refusal of a scene; empty where none is.
+std::string refusal_of(const Domain& domain, const SolveOptions& o, std::vector<std::string> accept = {}) {
+  Acceptance acceptance("solve", std::move(accept));
+  try {
+    judge_scene(plausibility_of(*drafted(domain, o)), o, acceptance);
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_all_of(const std::string& text, const std::vector<std::string>& words) {
+  for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
+}
+
+TEST(Plausible, an_ordinary_slide_passes) {
+  SolveOptions o;
+  EXPECT_EQ(refusal_of(plausible_block(4), o), "");
+  o.material.youngs_modulus = 1e6;
+  EXPECT_EQ(refusal_of(plausible_block(4), o), "");
+}
+
+TEST(Plausible, a_mass_that_its_weight_squashes_is_refused_with_its_numbers) {
+  SolveOptions o;
+  o.material.youngs_modulus = 1e4;  // 4 m press with 78 kPa, and made a deposit of 7.4 m
+  const std::string refusal = refusal_of(plausible_block(4), o);
+  expect_all_of(refusal,
+                {"4 m", "7.85e+04 Pa", "youngs_modulus_Pa = 1e+04", "accept = [\"weight-strain\"] in [solve]"});
+  Acceptance acceptance("solve", {"weight-strain", "slow-waves"});
+  const Domain domain = plausible_block(4);
+  judge_scene(plausibility_of(*drafted(domain, o)), o, acceptance);
+  EXPECT_EQ(acceptance.facts().front().first, "accepted.weight-strain");
+  EXPECT_NE(acceptance.facts().front().second.find("7.85e+04 Pa"), std::string::npos);
+}
+
+TEST(Plausible, the_weight_is_that_of_the_columns_with_the_material) {
+  SolveOptions o;
+  o.parts.push_back({.release = "soft", .material = {}});
+  o.parts[0].material.youngs_modulus = 1e4;
+  o.parts[0].material.density = 1000;
+  Domain d = plausible_block(4);
+  d.release_names.push_back("soft");
+  std::fill(d.points.release.begin(), d.points.release.begin() + 8, 1);
+  const ScenePlausibility found = plausibility_of(*drafted(d, o));
+  EXPECT_EQ(found.weighed_modulus, 1e4);
+  EXPECT_LT(found.weight, 2000 * 9.81 * 4);
+  EXPECT_GT(found.weight, 1000 * 9.81 * 4);
+  EXPECT_NEAR(found.thickness, 4, 1e-12);
+}
+
+TEST(Plausible, waves_beyond_those_of_any_solid_are_refused) {
+  SolveOptions o;
+  for (const double modulus : {1e15, 1e300}) {
+    o.material.youngs_modulus = modulus;
+    expect_all_of(refusal_of(plausible_block(4), o), {"youngs_modulus_Pa", "20 km/s", "fast-waves"});
+  }
+  o.material.youngs_modulus = 6e10;  // granite
+  o.material.density = 2700;
+  EXPECT_EQ(refusal_of(plausible_block(4), o), "");
+}
+
+TEST(Plausible, waves_far_slower_than_the_flow_are_refused) {
+  SolveOptions o;
+  o.material.youngs_modulus = 2e4;
+  o.material.density = 1500;
+  o.base.law = FrictionLaw::none;
+  const std::string refusal = refusal_of(plausible_block(0.5), o);  // too thin to be squashed by its weight
+  expect_all_of(refusal, {"waves run at", "slow-waves"});
+}
+
+TEST(Plausible, a_load_that_would_throw_the_mass_out_is_refused) {
+  SolveOptions o;
+  LoadOptions load;
+  load.box = {10, 22, 12, 36, 0, 4};
+  load.force = {0, 0, 1e15};
+  o.loads.push_back(load);
+  expect_all_of(refusal_of(plausible_block(4), o), {"1e+15 N", "force_N", "strong-loads"});
+  o.loads[0].force = {0, 0, 1e6};
+  EXPECT_EQ(refusal_of(plausible_block(4), o), "");
+}
+
+TEST(Plausible, names_that_can_be_accepted_are_those_of_the_recipe) {
+  SolveOptions o;
+  o.material.youngs_modulus = 1e4;
+  EXPECT_EQ(refusal_of(plausible_block(4), o, {std::begin(acceptable), std::end(acceptable)}), "");
+}
+
+}  // namespace
+}  // namespace talus::solver::testing

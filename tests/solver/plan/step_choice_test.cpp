@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What integrator = "auto" and accuracy settle before a run: which steps, how long, how stiff, and why.
+#include "solver/plan/step_choice.hpp"
+
+#include <cmath>
+
+#include "solver/options/solve.hpp"
+#include "solver/plan/stiffness.hpp"
+#include "tests/solver/plans.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+/// A slope of 30 degrees, cells of 10 m in layers of this height [m], with a slab on it.
+Domain slab_on_layers(double layer_height) {
+  Domain d = ground(40, 12, 10, layer_height, [](double x, double) { return 0.577 * (400 - x); });
+  for (int row = 4; row < 8; ++row) {
+    for (int column = 6; column < 14; ++column) d.release_thickness.at(column, row) = 10;
+  }
+  fill(d, {60, 140, 40, 80, 0, 10});
+  return d;
+}
+
+SolveOptions chosen_at(std::optional<double> accuracy) {
+  SolveOptions o;
+  o.integrator = Integrator::automatic;
+  o.accuracy = accuracy;
+  o.base.friction_angle = 20;
+  return o;
+}
+
+StepChoice steps_of(const Domain& domain, const SolveOptions& options) {
+  return choose_steps(domain, options, begun(domain, options).bound);
+}
+
+std::string unkept(const Domain& domain, const SolveOptions& options) {
+  return unkept_accuracy(domain, options, begun(domain, options).bound.line);
+}
+
+TEST(StepChoice, takes_columns_where_layers_are_thin) {
+  const StepChoice thin = steps_of(slab_on_layers(1), chosen_at(0.01));
+  EXPECT_EQ(thin.flow, Integrator::column_implicit);
+  EXPECT_TRUE(thin.rests);
+  ASSERT_EQ(thin.reasons.size(), 2u);
+  EXPECT_NE(thin.reasons[0].find("a flow takes column-implicit steps"), std::string::npos) << thin.reasons[0];
+  EXPECT_NE(thin.reasons[0].find("explicit steps of"), std::string::npos) << thin.reasons[0];
+  const StepChoice cubes = steps_of(slab_on_layers(10), chosen_at(0.01));
+  EXPECT_EQ(cubes.flow, Integrator::explicit_) << "a column's step is half as dear again and no longer";
+}
+
+TEST(StepChoice, takes_shorter_steps_and_stiffer_rock_for_a_finer_accuracy) {
+  double last_cfl = 0, last_strain = 0;
+  for (const double accuracy : {0.002, 0.005, 0.01, 0.05}) {
+    const StepChoice choice = steps_of(slab_on_layers(1), chosen_at(accuracy));
+    EXPECT_GE(choice.cfl, last_cfl);
+    EXPECT_LE(choice.cfl, 1.5);
+    EXPECT_GT(strain_for(accuracy), last_strain);
+    last_cfl = choice.cfl;
+    last_strain = strain_for(accuracy);
+  }
+  EXPECT_GT(last_cfl, steps_of(slab_on_layers(1), chosen_at(0.002)).cfl);
+}
+
+TEST(StepChoice, takes_the_longest_steps_by_columns_for_what_holds_no_tension) {
+  SolveOptions o = chosen_at(0.05);
+  EXPECT_EQ(steps_of(slab_on_layers(1), o).cfl, 1.5);
+  o.material.tension_cutoff = 1e3;
+  EXPECT_EQ(steps_of(slab_on_layers(1), o).cfl, 1);
+}
+
+TEST(StepChoice, keeps_the_cfl_of_a_recipe_that_names_no_accuracy) {
+  SolveOptions o = chosen_at({});
+  o.cfl = 0.3;
+  EXPECT_EQ(steps_of(slab_on_layers(1), o).cfl, 0.3);
+}
+
+TEST(StepChoice, says_why_columns_are_out_of_the_question) {
+  SolveOptions o = chosen_at(0.01);
+  o.walls.push_back({.axis = Axis::z, .material_is = Side::below});
+  const StepChoice below = steps_of(slab_on_layers(1), o);
+  EXPECT_EQ(below.flow, Integrator::explicit_);
+  EXPECT_NE(below.reasons[0].find("a [[solve.wall]] across z above the material"), std::string::npos);
+}
+
+/// Waves 1.5 m high and four cells long under a slab of this thickness [m]: between neighbouring cells slopes change by
+/// a tenth, and an arc over a cell rises by a tenth of a metre over its chord.
+Domain slab_on_waves(double thickness) {
+  Domain d = slab_on_layers(1);
+  for (double& t : d.release_thickness.values) t *= thickness / 10;
+  for (int row = 0; row < d.grid.rows; ++row) {
+    for (int column = 0; column < d.grid.columns; ++column)
+      d.terrain.at(column, row) += 0.75 * std::cos(column * M_PI / 2 + 0.7);
+  }
+  return d;
+}
+
+TEST(StepChoice, takes_short_explicit_steps_on_ground_rough_for_the_flow) {
+  const StepChoice thin = steps_of(slab_on_waves(4), chosen_at(0.01)),
+                   thick = steps_of(slab_on_waves(20), chosen_at(0.01));
+  EXPECT_EQ(thin.flow, Integrator::explicit_);
+  EXPECT_EQ(thin.cfl, 0.5);
+  EXPECT_EQ(steps_of(slab_on_waves(4), chosen_at(0.05)).cfl, 0.5) << "longer ones move a tenth of the deposit";
+  EXPECT_EQ(steps_of(slab_on_waves(4), chosen_at(0.005)).cfl, 0.25);
+  EXPECT_NE(thin.reasons[0].find("within a cell the ground bends by 0.0"), std::string::npos) << thin.reasons[0];
+  EXPECT_EQ(thick.flow, Integrator::column_implicit);
+  EXPECT_EQ(thick.cfl, 1);
+}
+
+TEST(StepChoice, says_where_an_accuracy_cannot_be_kept) {
+  const std::string words = unkept(slab_on_waves(4), chosen_at(0.01));
+  EXPECT_NE(words.find("[solve] accuracy = 0.01 is not kept on this ground: within a cell it bends by 0.0"),
+            std::string::npos)
+      << words;
+  EXPECT_EQ(unkept(slab_on_waves(20), chosen_at(0.01)), "");
+  EXPECT_EQ(unkept(slab_on_waves(4), chosen_at(0.05)), "");
+  EXPECT_EQ(unkept(slab_on_waves(4), chosen_at({})), "");
+}
+
+TEST(StepChoice, takes_no_implicit_steps_where_something_keeps_from_them) {
+  const auto rests = [](auto change) {
+    SolveOptions o = chosen_at(0.01);
+    change(o);
+    const StepChoice choice = steps_of(slab_on_layers(1), o);
+    EXPECT_EQ(with_steps(o, choice).integrator, choice.rests ? Integrator::automatic : choice.flow);
+    return choice.rests;
+  };
+  EXPECT_TRUE(rests([](SolveOptions&) {}));
+  EXPECT_FALSE(rests([](SolveOptions& o) { o.material.model = MaterialModel::mu_of_i; }));
+  EXPECT_FALSE(rests([](SolveOptions& o) { o.base.separation = Separation::none; }));
+  EXPECT_FALSE(rests([](SolveOptions& o) { o.deterministic = true; }));
+  EXPECT_FALSE(rests([](SolveOptions& o) { o.energy_budget = true; }));
+}
+
+TEST(StepChoice, is_carried_out_to_the_last_key) {
+  SolveOptions o = chosen_at(0.01);
+  const StepChoice choice = steps_of(slab_on_layers(1), o);
+  o = with_steps(o, choice);
+  EXPECT_EQ(o.flow, choice.flow);
+  EXPECT_EQ(o.flow_integrator(), choice.flow);
+  EXPECT_EQ(o.cfl, choice.cfl);
+}
+
+TEST(StepChoice, what_a_stiffness_went_by_is_not_asked_for_again) {
+  // The used recipe names accuracy and the modulus; a strain beside accuracy would be refused.
+  SolveOptions o = chosen_at(0.01);
+  o.material.stiffness = StiffnessKind::automatic;
+  o.material.stiffness_strain = strain_for(0.01);
+  o = with_stiffness(o, lowest_stiffness(o, begun(slab_on_layers(1), o).bound));
+  std::vector<Fault> faults;
+  recipe::find_unmet(o, faults);
+  EXPECT_TRUE(faults.empty());
+}
+
+TEST(StepChoice, is_settled_from_the_recipe_in_two_steps) {
+  SolveOptions o = chosen_at(0.01);
+  o.material.youngs_modulus = 1e12;
+  const Domain d = slab_on_layers(1);
+  Plan plan = begun(d, o);
+  std::vector<std::string> reasons;
+  const SolveOptions soft = settle_stiffness(o, plan.bound, reasons);
+  settle(plan);
+  const SolveOptions& settled = plan.options;
+  EXPECT_LT(soft.material.youngs_modulus, 1e12);
+  EXPECT_EQ(soft.accuracy, o.accuracy) << "the recipe as used asks for it again";
+  EXPECT_EQ(settled.flow, steps_of(d, soft).flow);
+  EXPECT_FALSE(settled.accuracy);
+  o.integrator = Integrator::explicit_;
+  o.accuracy.reset();
+  EXPECT_EQ(settle_stiffness(o, plan.bound, reasons).material.youngs_modulus, 1e12);
+  EXPECT_EQ(settle_steps(d, o, plan.bound, reasons).integrator, Integrator::explicit_);
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
