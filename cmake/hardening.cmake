@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A program that writes beyond its bounds ends there: lengths in calls of the C library are checked (FORTIFY), and a
-# mark before the return address of functions that hold arrays. What it costs: docs/log/reliability.md.
+# mark before the return address of functions that hold arrays. What it costs: docs/explanation/reliability.md.
 # Sanitizers see more and do not go together with FORTIFY; kernels that nvcc compiles are left as they are. Containers
 # check their indices in the configuration Debug, as they do under sanitizers.
 option(TALUS_HARDEN "Checked calls of the C library, protected stacks" ON)

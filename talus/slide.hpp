@@ -48,7 +48,7 @@ struct Proposal {
 
 /// Spacing: twenty cells across the release, but not finer than the models, unless eight need it. Layers: four and a
 /// half or more over the median thickness, none higher than a cell is wide. Bed: the angle at which the centre of mass
-/// went, or the usual Fahrboeschung. Inside: 1.4 times its tangent (docs/decisions/0022). End: four times the way over
+/// went, or the usual Fahrboeschung. Inside: 1.4 times its tangent (material-laws.md). End: four times the way over
 /// the largest speed that the energy line allows, twice what a block takes that speeds up and slows down evenly.
 Proposal propose(const Slide& slide);
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of docs/decisions/0016-inner-architecture.md: sizes, docstrings, formatting, cycles, compile times.
+"""Sizes, docstrings, formatting, cycles and compile times of the code.
 
     tools/measure-code.py [--source DIR] [--build DIR]
 

@@ -15,7 +15,7 @@
 namespace talus::postprocess {
 namespace {
 
-// Packed bytes, as measured on the synthetic valley and Frank Slide (docs/how-to/three-d.md): of a cell under the flow
+// Packed bytes, as measured on the synthetic valley and Frank Slide (docs/how-to/results.md): of a cell under the flow
 // 36 and 31, of a cell of the ground 17 and 21, of a point 26 and 27, of a voxel 20 and 14. A cell of the ground as PLY
 // is not packed.
 constexpr double bytes_of_a_vertex = 34, bytes_of_ground = 20, bytes_of_a_point = 27, bytes_of_a_voxel = 16;

@@ -14,7 +14,7 @@
 namespace talus::postprocess {
 
 /// What OUT/3d will take, about, in MB of 1e6 bytes: from counts of points, cells and voxels and what each of them took
-/// in runs that were measured (docs/how-to/three-d.md).
+/// in runs that were measured (docs/how-to/results.md).
 struct ThreeDSize {
   double surface = 0, terrain = 0, points = 0, volumes = 0;
   double all() const { return surface + terrain + points + volumes; }

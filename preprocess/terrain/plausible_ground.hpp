@@ -23,7 +23,7 @@ struct HeightSource {
 };
 
 /// Throws DataError unless accepted ("steep-ground") where a tenth of a surface [m] is steeper than 50 degrees or some
-/// of it is higher than 9,000 m, as where feet are taken for metres. On the terrain at hand (docs/decisions/0029) a
+/// of it is higher than 9,000 m, as where feet are taken for metres. On the terrain at hand (notes/plausibility.md) a
 /// tenth is steeper than 26 to 43 degrees, and read as feet 58 to 72.
 void judge_heights(const Raster& surface, const HeightSource& source, Acceptance& acceptance);
 

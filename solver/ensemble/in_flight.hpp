@@ -19,7 +19,7 @@ struct InFlight {
   std::string reason;  ///< in words
 };
 
-/// The most members that a GPU runs at a time: more gain nothing (docs/decisions/0043-ensembles.md).
+/// The most members that a GPU runs at a time: more gain nothing (docs/notes/ensembles.md).
 inline constexpr int most_on_a_gpu = 48;
 
 /// Of `members` that need so many bytes each: on the CPU one for every thread of this process, on GPUs most_on_a_gpu

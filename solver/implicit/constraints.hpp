@@ -42,7 +42,7 @@ struct Constraints {
   const double* pull = nullptr;       ///< a contact opens when it would have to pull by more than this, or rounding
                                       ///< would open it [N]
 
-  /// How often a node may change between stick and slip in a step (more made more cuts: decision 0006); then its
+  /// How often a node may change between stick and slip in a step (more made more cuts: docs/notes/newton.md); then its
   /// friction is smoothed instead. One that has closed too often stays closed to the step's end.
   static constexpr int most_turns = 1, most_closings = 3;
   /// Whether friction of node n is smoothed: it has changed between stick and slip too often.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The active set of an implicit step's nodes: which are open, slip or stick (decision 0006).
+// The active set of an implicit step's nodes: which are open, slip or stick (docs/notes/newton.md).
 #pragma once
 
 #include "solver/implicit/constraints.hpp"

@@ -45,7 +45,7 @@ struct NewtonScheme {
 
 /// The scheme that the recipe gives. Where it leaves it open: for newmark's steps of a material that flows backward
 /// Euler (0.5, 1) to 1e-2, which leaves less of the deposit elsewhere than the trapezoid to 1e-6 does in a third of the
-/// time (docs/decisions/0006-newton-in-flowing-sand.md); for anything else, statics, elastic bodies and what is at rest
+/// time (docs/notes/newton.md); for anything else, statics, elastic bodies and what is at rest
 /// (integrator = "auto"), the trapezoid to 1e-6.
 NewtonScheme scheme_of(const SolveOptions& options);
 

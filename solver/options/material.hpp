@@ -12,7 +12,7 @@
 
 namespace talus::solver {
 
-/// Whether Young's modulus is the one given, or the lowest that leaves the flow unchanged (decision 0008).
+/// Whether Young's modulus is the one given, or the lowest that leaves the flow unchanged (docs/notes/integrators.md).
 enum class StiffnessKind { as_given, automatic };
 
 /// The strain under the dynamic pressure of the flow to which a chosen stiffness holds, unless the recipe says

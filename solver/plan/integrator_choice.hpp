@@ -26,7 +26,7 @@ struct BatchCount {
 
 /// The work of a batch, in explicit steps: what kernels read and write, not what a clock says, so that a recipe takes
 /// the same steps on every machine. A column-implicit step counts as 1.5, a Newton iteration as 10, one of the linear
-/// solver as 0.65 (docs/decisions/0009-choice-of-integrator.md).
+/// solver as 0.65 (docs/notes/integrators.md).
 double work_of(Integrator flow, const BatchCount& count);
 
 /// The choice of `integrator = "auto"`: steps of the flow while anything moves. Where nothing would move by a

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a recipe asks that hardly any slide does: refused before the run unless the recipe insists on it by name
-// (docs/decisions/0030-points-are-the-measure.md).
+// (docs/notes/plausibility.md).
 #pragma once
 
 #include "common/stage/acceptance.hpp"

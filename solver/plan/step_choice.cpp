@@ -15,7 +15,7 @@ namespace talus::solver {
 namespace {
 
 // Shares of the CFL step that keep to an accuracy, over that accuracy, and their limits
-// (docs/decisions/0009-choice-of-integrator.md).
+// (docs/notes/integrators.md).
 constexpr double explicit_per_accuracy = 80, rough_per_accuracy = 50, columns_per_accuracy = 100;
 constexpr double most_explicit = 0.8, most_rough = 0.5, least_cfl = 0.1;
 constexpr double roughest = 0.01;  // bend of the ground over the thickness up to which long steps keep to it

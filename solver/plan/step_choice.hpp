@@ -25,7 +25,7 @@ struct StepChoice {
 StepChoice choose_steps(const Domain& domain, const SolveOptions& options, const SpeedBound& bound);
 
 /// What is wrong with the `accuracy` that a recipe asks for: no steps keep it on ground that is rough for the flow
-/// (docs/decisions/0009-choice-of-integrator.md). Empty: nothing is known to be.
+/// (docs/notes/integrators.md). Empty: nothing is known to be.
 std::string unkept_accuracy(const Domain& domain, const SolveOptions& options, const EnergyLine& line);
 
 /// The options with the choice carried out.

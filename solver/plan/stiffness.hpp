@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lowest stiffness that leaves a flow unchanged ([solve.material] stiffness = "auto"; docs/decisions/0008).
+// The lowest stiffness that leaves a flow unchanged ([solve.material] stiffness = "auto"; docs/notes/integrators.md).
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct StiffnessDemand {
 StiffnessDemand lowest_stiffness(const SolveOptions& options, const SpeedBound& bound);
 
 /// The strain by which `stiffness = "auto"` goes at an accuracy: sqrt(strain) grows with the share of the deposit that
-/// lies elsewhere (docs/decisions/0008-stiffness.md).
+/// lies elsewhere (docs/notes/integrators.md).
 double strain_for(double accuracy);
 
 /// The options with `stiffness = "auto"` carried out.

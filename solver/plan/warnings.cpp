@@ -20,7 +20,7 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 /// What the mass should hold over what its bed asks, as tangents: with less, part of the shear stays in the mass (Frank
-/// Slide on beds of 10 to 20 degrees, docs/decisions/0022-cone-of-simple-shear.md).
+/// Slide on beds of 10 to 20 degrees, docs/notes/material-laws.md).
 constexpr double recommended_ratio = 1.4;
 
 /// The thickness at which strengths are compared [m]: the largest that is released.

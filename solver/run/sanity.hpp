@@ -8,7 +8,7 @@
 
 namespace talus::solver {
 
-/// Bounds of what is sane; beyond them a run says so. The reasons stand in docs/decisions/0030.
+/// Bounds of what is sane; beyond them a run says so. The reasons stand in docs/notes/plausibility.md.
 struct SanityBounds {
   double volume_error = 1e-6;  ///< volumes in single precision are exact to 6e-8
   double volume_left = 0.5;    ///< beyond it the map shows less than half of the slide

@@ -13,7 +13,7 @@ namespace talus::solver {
 namespace {
 
 /// The transfer time of a recipe without one, over the root of layer height over gravity; without gravity, over the
-/// time in which a wave crosses a layer (docs/decisions/0004).
+/// time in which a wave crosses a layer (docs/notes/grid-and-transfer.md).
 constexpr double transfer_falls = 0.3, transfer_waves = 10;
 
 /// The coefficient of friction of an angle in degrees.

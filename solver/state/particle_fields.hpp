@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The fields of the material points: one table, from which come their storage, the view that kernels have of it, the
-// copy on the host, sorting, checkpoints and frames (docs/decisions/0018-field-tables.md). A new state variable is a
+// copy on the host, sorting, checkpoints and frames (docs/notes/code-structure.md). A new state variable is a
 // line here and the kernel that uses it.
 #pragma once
 

@@ -9,7 +9,7 @@ and the next run ends with the results of a run that nothing disturbed.
       [--stage STAGE] [--scene SCENE] [--part K/N] [--table FILE]
 
 Without --full a few places of each kind, in seconds; with it every rename and sync, and the tables that
-docs/log/reliability.md shows. Needs gdalinfo, h5dump and an x86-64 Linux; exit code 77 where there is none
+docs/explanation/reliability.md shows. Needs gdalinfo, h5dump and an x86-64 Linux; exit code 77 where there is none
 of it.
 """
 import argparse

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How densely points lie that nothing moved but chance and their own weight: what a run may show at most.
 
-Points that drift within cells gather where nothing holds them apart (decision 0030). A flow that stirs them leaves them
+Points that drift within cells gather where nothing holds them apart (docs/notes). A flow that stirs them leaves them
 no denser than points thrown at random: their number in a cell is then a Poisson number of mean 1 / share, of points
 that take `share` of a cell each. Weight compresses the mass beside that, by exp(pressure / modulus of confined
 compression)."""

@@ -11,7 +11,7 @@ namespace talus::solver {
 namespace {
 
 /// An equilibrium is found where this share of the forces is left unbalanced, at most; what fails leaves some
-/// thousandths (docs/decisions/0036).
+/// thousandths (docs/notes/stability-and-shaking.md).
 constexpr double balanced = 1e-4;
 constexpr int most_iterations = 80;
 /// Iterations without a halving of the unbalanced force after which a trial is given up: those that found an

@@ -108,7 +108,7 @@ TEST_P(SampleBounds, no_slide_has_more_energy_than_it_fell_through) {
 
 TEST_P(SampleBounds, drag_delivered_is_drag_due) {
   // Of what was due, a solver that let the drag act on the fill of the base node delivered 76 % after 10 s on real
-  // ground, and 12 % after 20 s (decision 0020).
+  // ground, and 12 % after 20 s (docs/notes/bed-and-contact.md).
   for (const BoundedScene& bounded : {bounded_scenes[0], bounded_scenes[1]}) {
     SampleRun run(bounded.scene(), GetParam());
     double delivered = 0, due = 0, least = 1;

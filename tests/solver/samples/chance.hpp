@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How densely points may lie that nothing moved but chance and their own weight (decision 0030).
+// How densely points may lie that nothing moved but chance and their own weight (docs/notes/grid-and-transfer.md).
 #pragma once
 
 #include <cmath>

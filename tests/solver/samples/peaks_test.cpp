@@ -35,7 +35,7 @@ class SamplePeaks : public InEachPlace {
     const auto solver = make_solver(scene, o, GetParam());
     run_to(*solver, end);
     const SolverState state = solver->state();
-    // The worst sample has 3.2 over time, and a quarter is to spare (decision 0030).
+    // The worst sample has 3.2 over time, and a quarter is to spare (docs/notes/grid-and-transfer.md).
     const Packing packing = solver->packing();
     EXPECT_LT(packing.p99, 4);
     EXPECT_GE(packing.largest, packing.p99);
