@@ -8,7 +8,7 @@ usage: tools/make-pictures.py [NAME...] --bin DIR --work DIR [--data DIR]     ma
 
 docs/pictures/pictures.json lists every picture: what makes it, the files that decide what it shows ("from"), and the
 SHA-256 of these ("stamp"). A tutorial counts by its commands and files alone, so that its prose may change. Sources
-of programs are not among them: tests of the tutorials draw their pictures anew and compare (decision 0042).
+of programs are not among them: tests of the tutorials draw their pictures anew and compare.
 Pictures of real events need their data (--data), and those of a validation case what make validate leaves beside the
 programs; without, they are left as they are.
 """

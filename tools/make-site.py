@@ -79,13 +79,7 @@ def add_tree(index, source):
     rest = [p for p in sorted(folder.rglob("*.md")) if p not in inside and p != index]
     nested = {p.parent for p in rest + inside if p.name == "index.md" and p.parent != folder}
     listed = [p for p in dict.fromkeys(inside + rest) if p.name == "index.md" or p.parent not in nested]
-    if folder.name == "decisions":
-        text += "\n" + "".join(f"- [{title(p)}]({p.name})\n" for p in listed)
     index.write_text(text + tree_of([entry(p, folder) for p in listed]), encoding="utf-8")
-
-
-def title(page):
-    return page.read_text(encoding="utf-8").partition("\n")[0].lstrip("# ").strip()
 
 
 def add_root_tree(source):
@@ -97,7 +91,7 @@ def add_root_tree(source):
     project = [entry(p, index.parent) for p in beside if p.parent == source]
     with index.open("a", encoding="utf-8") as out:
         out.write(tree_of(parts) + tree_of(scenes, "Scenes and samples") + tree_of(project, "The project") +
-                  tree_of(["decisions/index", "log/index"], "For developers"))
+                  tree_of(["notes/index"], "For developers"))
 
 
 def add_reference(source, programs):
