@@ -127,7 +127,7 @@ check-threads: ## tests of what runs in threads under the thread sanitizer [TEST
 	@$(MAKE) --no-print-directory sanitized PRESET=check-threads
 
 # What needs no programs from outside and ends in time under a sanitizer: of each folder what the label "quick" names,
-# and the replays. docs/log/reliability.md says when it last passed.
+# and the replays. docs/explanation/reliability.md says when it last passed.
 check_tests            := ^(common|preprocess|postprocess|solver|fuzz)[.]
 check_programs         := $(addprefix talus-tests-,common preprocess postprocess solver) talus-replay
 check-threads_tests    := ^(preprocess|postprocess|solver)[.]
@@ -145,8 +145,9 @@ fuzz: ## the fuzz targets, with clang, for FUZZ_SECONDS each [FUZZ_SECONDS=60] [
 	@tools/install-dependencies.sh fuzz
 	@tools/fuzz.sh '$(or $(FUZZ_SECONDS),60)' $(TARGETS)
 
-# The table names the commit of the tree that was just built, with -dirty behind it where that has changes.
-validate: with-tests ## error beside tolerance, docs/explanation/validation.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
+# The table names the commit of the tree that was just built, with -dirty behind it where that has changes. It is a file
+# of a release, and 'make tables' reads it.
+validate: with-tests ## error beside tolerance, into build/validation-table.md [LONG=1] [ON=cpu|gpu] [CASES="A1 B2"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-validate
 	@code=0; $(BUILD)/bin/talus-validate --on $(ON) $(if $(filter-out 0 no,$(LONG)),--long) \
 	  --commit "$$(git describe --always --dirty --abbrev=9 --exclude='*' 2>/dev/null || echo unknown)" $(CASES) \
@@ -188,8 +189,8 @@ pictures: with-tests ## the documents' pictures, from runs and tables [PICTURES=
 	@/usr/bin/python3 tools/make-pictures.py --bin $(BUILD)/bin --work $(BUILD)/pictures \
 	  $(if $(DATA),--data '$(DATA)') $(PICTURES)
 
-tables: ## the documents' tables of figures, from the files that measuring commands have left
-	@python3 tools/make-tables.py
+tables: ## the documents' tables of figures [VALIDATION=build/validation-table.md: those of the validation too]
+	@python3 tools/make-tables.py $(if $(VALIDATION),--validation '$(VALIDATION)')
 
 # All scenes that end in a score; those of real events need their data, and the rest of Xinmo's are nobody's to give.
 scenes_without_score := xinmo frank-ensemble synthetic-ensemble synthetic-slides

@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes the tables of figures into the pages that show them, from the files that the measuring commands have left.
 
-usage: tools/make-tables.py              write them
-       tools/make-tables.py --check      fail where a page does not show what the files say
-       tools/make-tables.py --scores OUT...   first take the scores of scenes from these folders of results
+usage: tools/make-tables.py                        the tables of docs/benchmarks
+       tools/make-tables.py --validation TABLE.md  the tables of the validation too, from what `make validate` writes
+       tools/make-tables.py --scores OUT...        first read the scores of scenes from these folders of results
 
-docs/explanation/validation-table.md   of `make validate`: all rows of one commit
+TABLE.md                               build/validation-table.md of `make validate LONG=1`: all rows of one commit
 docs/benchmarks/speed-against-error.csv, kernels-h200.csv   of `make -C pipelines/benchmarks`
 docs/benchmarks/scores.csv             of the scenes of pipelines/, by --scores
 A page holds "<!-- table: NAME -->" and "<!-- end of table -->"; what stands between them is written here.
@@ -22,9 +22,8 @@ import textwrap
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGES = ["README.md", "docs/explanation/validation.md", "docs/explanation/benchmarks.md"]
+PAGES = ["README.md", "docs/explanation/validation.md", "docs/explanation/performance.md"]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end of table -->)", re.S)
-ROWS = ROOT / "docs/explanation/validation-table.md"
 SCORES = ROOT / "docs/benchmarks/scores.csv"
 REAL_EVENTS = ("cascade2021", "frank-slide")
 DAY = "2026-11-26"  # of the rows of speed-against-error.csv, which name their commit alone
@@ -52,9 +51,9 @@ CASES = {
 }
 
 
-def rows_of_validation():
+def rows_of_validation(table):
     """(case, quantity, error, tolerance, met) of every judged row that is no cost; and (commit, day, place)."""
-    text, rows, case = ROWS.read_text(encoding="utf-8"), [], ""
+    text, rows, case = table.read_text(encoding="utf-8"), [], ""
     heading = re.search(r"^Commit (\w+), ([\d-]+), .*? on (.*)\.$", text, re.M)
     for line in text.splitlines():
         name = re.match(r"\*\*([A-D]\d[a-z]?(?:-\w+)?) ?.*\*\*$", line)
@@ -65,7 +64,7 @@ def rows_of_validation():
             error = None if cells[3] == "-" else float(cells[3])  # none: the run failed
             rows.append((case, cells[0], error, float(cells[4]), cells[5] == "met"))
     if not rows or not heading:
-        sys.exit(f"tools/make-tables.py: {ROWS.relative_to(ROOT)} holds no judged rows. Write it: make validate")
+        sys.exit(f"tools/make-tables.py: {table} holds no judged rows. Write it: make validate LONG=1")
     return rows, heading.groups()
 
 
@@ -73,10 +72,15 @@ def percent(part):
     return "0" if part == 0 else f"{100 * part:.2g} %" if part >= 1e-4 else f"{part:.0e}"
 
 
-def validated(cases):
-    rows, (commit, day, place) = rows_of_validation()
+def missed_first(cases, rows):
+    missed = {row[0] for row in rows if not row[4]}
+    return sorted(cases, key=lambda case: case not in missed)
+
+
+def validated(table, cases, order=lambda cases, _: cases):
+    rows, (commit, day, place) = rows_of_validation(table)
     lines = ["| case | against | met | median error | largest |", "| --- | --- | --- | --- | --- |"]
-    for case in cases:
+    for case in order(cases, rows):
         mine = [row for row in rows if row[0] == case]
         if not mine:
             continue
@@ -158,17 +162,17 @@ def events():
 
 def scenes():
     rows = scores()
-    lines = ["| scene | points | steps | released [m3] | run-out | fastest | footprint | deposit | packing | sane |",
+    lines = ["| scene | points | steps | released [m3] | run-out | fastest | footprint | deposit | packing | checks |",
              "|" + " --- |" * 10]
     for r in rows:
         lines.append(f"| `{r['scene']}` | {number(r['particles'], 0)} | {number(r['steps'], 0)} | "
                      f"{number(r['volume_released_m3'], 0)} | {number(r['runout_m'], 0, ' m')} | "
                      f"{number(r['max_peak_speed_m_s'], 1, ' m/s')} | {number(r['footprint_csi'], 2)} | "
                      f"{number(r['deposit_csi'], 2)} | {number(r['sanity_packing_p99'], 1)} | "
-                     f"{'yes' if r['sanity'] == 'sane' else 'warned of'} |")
+                     f"{'passed' if r['sanity'] == 'sane' else 'warned'} |")
     return [*lines, "", made(rows, f"on one {rows[0]['on']}, by `make scores`. Footprint and deposit: CSI against the"),
-            "scene's survey or other model, where it has one. Packing: 99 % of the volume is packed no denser. Sane: "
-            "as the", "last line of a run says."]
+            "scene's survey or other model, where it has one. Packing: 99 % of the volume is packed no denser. Checks: "
+            "last line", "of a run."]
 
 
 def take_scores(folders):
@@ -198,9 +202,12 @@ def day_of(folder):
     return datetime.date.fromtimestamp((folder / "score.json").stat().st_mtime).isoformat()
 
 
+OF_VALIDATION = {
+    "validated": lambda table: validated(table, ["A3", "A3b", "A3c", "B1", "B2", "B3", "B4", "B5", "B7", "C1", "D1",
+                                                 "D4"]),
+    "validation-cases": lambda table: validated(table, list(CASES), missed_first),
+}
 TABLES = {
-    "validated": lambda: validated(["A3", "A3b", "A3c", "B1", "B2", "B3", "B4", "B5", "B7", "C1", "D1", "D4"]),
-    "validation-cases": lambda: validated(list(CASES)),
     "speed": speed,
     "kernels": kernels,
     "events": events,
@@ -208,27 +215,33 @@ TABLES = {
 }
 
 
-def filled(path):
-    """The page's text with every table as the files have it now."""
+def filled(path, validation):
+    """The page's text with every table as the files have it now; those of the validation only where its rows are."""
     root = "../" * (len(path.relative_to(ROOT).parts) - 1)
-    return BLOCK.sub(lambda m: m.group(1) + "\n".join(TABLES[m.group(2)]()).replace("ROOT", root) + "\n" + m.group(3),
-                     path.read_text(encoding="utf-8"))
+
+    def block(match):
+        name = match.group(2)
+        if name in OF_VALIDATION and not validation:
+            return match.group(0)
+        lines = OF_VALIDATION[name](validation) if name in OF_VALIDATION else TABLES[name]()
+        return match.group(1) + "\n".join(lines).replace("ROOT", root) + "\n" + match.group(3)
+    return BLOCK.sub(block, path.read_text(encoding="utf-8"))
 
 
 def main():
-    if sys.argv[1:2] == ["--scores"]:
-        take_scores(sys.argv[2:])
-    elif sys.argv[1:] not in ([], ["--check"]):
+    kind, *rest = sys.argv[1:] or [""]
+    if kind == "--scores":
+        take_scores(rest)
+    elif kind and (kind != "--validation" or len(rest) != 1):
         sys.exit(__doc__)
-    stale = [name for name in PAGES if filled(ROOT / name) != (ROOT / name).read_text(encoding="utf-8")]
-    if sys.argv[1:] == ["--check"]:
-        if stale:
-            sys.exit(f"{', '.join(stale)}: a table is not what its file of figures says. Write it: make tables")
-        print(f"{sum(len(BLOCK.findall((ROOT / name).read_text())) for name in PAGES)} tables are those of their files")
-        return
-    for name in stale:
-        (ROOT / name).write_text(filled(ROOT / name), encoding="utf-8")
-        print(ROOT / name)
+    validation = pathlib.Path(rest[0]) if kind == "--validation" else None
+    if validation and not validation.is_file():
+        sys.exit(f"tools/make-tables.py: {validation} was not found. Write it: make validate LONG=1")
+    for name in PAGES:
+        text = filled(ROOT / name, validation)
+        if text != (ROOT / name).read_text(encoding="utf-8"):
+            (ROOT / name).write_text(text, encoding="utf-8")
+            print(ROOT / name)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Makes a release of what is here: the version in CMakeLists.txt (all else reads it there), version and date in
 # CITATION.cff, and the heading of CHANGELOG.md under which the unreleased changes come. It commits nothing.
+# The table of all rows of the validation is a file of the release.
 # usage: tools/release.sh VERSION [DATE]     (2.0.1; the date of today, as 2026-12-31)
 set -euo pipefail
 usage='usage: tools/release.sh VERSION [DATE]'
@@ -23,4 +24,4 @@ sed -i -E "s/^(project\(talus VERSION )[0-9.]+/\1$version/" CMakeLists.txt
 sed -i -E "/^date-released: /d; s/^version: .*/version: $version\ndate-released: $date/" CITATION.cff
 sed -i "s/^## \[Unreleased\]$/&\n\n## [$version] - $date/" CHANGELOG.md
 echo "$present -> $version, $date. Look at the change, then: git commit -am 'Version $version' &&" \
-  "git tag -a v$version -m 'Talus $version'"
+  "git tag -a v$version -m 'Talus $version'. Publish build/validation-table.md with it ('make validate LONG=1 ON=gpu')."

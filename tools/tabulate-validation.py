@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes all rows of a run of `make validate` as one table, from its validation.json, which names commit and day.
 
-usage: tools/tabulate-validation.py JSON... [MARKDOWN]        (default: docs/explanation/validation-table.md)
+usage: tools/tabulate-validation.py JSON... [MARKDOWN]        (default: validation-table.md beside the first JSON)
 Several files hold cases of their own, made at one commit; files of different commits are refused.
 """
 import json
@@ -11,8 +11,6 @@ import pathlib
 import re
 import sys
 import textwrap
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def number(value, digits=4):
@@ -70,8 +68,7 @@ def heading(sittings, rows):
                             break_on_hyphens=False), "",
              f"{len(rows)} rows: {len(judged)} are judged, {len(missed)} of these miss their tolerance; "
              f"{len(noted)} are noted",
-             f"and claim nothing, {len(lost)} of these without a result. Cases and what they mean:",
-             "[validation.md](validation.md). Written by `tools/tabulate-validation.py`."]
+             f"and claim nothing, {len(lost)} of these without a result. Cases: docs/explanation/validation.md."]
     return words, len(missed)
 
 
@@ -80,7 +77,7 @@ def main():
     others = [a for a in sys.argv[1:] if not a.endswith(".json")]
     if not files or len(others) > 1 or any(not a.endswith(".md") for a in others):
         sys.exit(__doc__)
-    target = pathlib.Path(others[0]) if others else ROOT / "docs/explanation/validation-table.md"
+    target = pathlib.Path(others[0]) if others else pathlib.Path(files[0]).with_name("validation-table.md")
     sittings = read(files)
     rows = [row for s in sittings for row in s["rows"]]
     words, missed = heading(sittings, rows)

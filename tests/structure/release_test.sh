@@ -31,6 +31,7 @@ test_release_sets_version_date_and_heading() {
   cp "$TALUS_SOURCE"/{CMakeLists.txt,CITATION.cff,CHANGELOG.md} .
   export TALUS_RELEASE_OF=$TALUS_SCRATCH
   expect_exit 0 "$TALUS_SOURCE/tools/release.sh" 97.1.2 2097-05-04
+  grep -q 'build/validation-table.md' stdout || fail "it names no table of the validation: $(<stdout)"
   [[ $(version_of .) == 97.1.2 ]] || fail "CMakeLists.txt has $(version_of .)"
   grep -qx 'version: 97.1.2' CITATION.cff && grep -qx 'date-released: 2097-05-04' CITATION.cff ||
     fail "$(<CITATION.cff)"
