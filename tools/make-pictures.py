@@ -1,88 +1,29 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the pictures of the documents, each from a run or from a table of figures, with a stamp of what it is made of.
+"""Makes the pictures of the documents, each from a run, a table of figures or a case of the validation.
 
 usage: tools/make-pictures.py [NAME...] --bin DIR --work DIR [--data DIR]     make these, or all
-       tools/make-pictures.py --check                                       say which are stale or of no known origin
 
-docs/pictures/pictures.json lists every picture: what makes it, the files that decide what it shows ("from"), and the
-SHA-256 of these ("stamp"). A tutorial counts by its commands and files alone, so that its prose may change. Sources
-of programs are not among them: tests of the tutorials draw their pictures anew and compare.
-Pictures of real events need their data (--data), and those of a validation case what make validate leaves beside the
-programs; without, they are left as they are.
+docs/pictures/pictures.json lists every picture and what makes it. Tests of the tutorials draw their pictures again and
+compare. Pictures of real events need their data (--data), those of a validation case what make validate leaves beside
+the programs; without, they are left as they are.
 """
 import argparse
-import hashlib
 import json
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
-import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "docs/pictures"
 LIST = FOLDER / "pictures.json"
 
 
-def content_of(path):
-    """What of a file decides a picture: of a page the commands, the files it gives and the names of pictures; of a
-    recipe the values; else all of it."""
-    if path.suffix == ".toml":
-        return json.dumps(tomllib.loads(path.read_text(encoding="utf-8")), sort_keys=True).encode()
-    if path.suffix == ".md":
-        text = path.read_text(encoding="utf-8")
-        blocks = re.findall(r"^```(\w+)\n(.*?)^```$|(<!-- picture: .*? -->)", text, re.M | re.S)
-        return "\n".join("\n".join(line for line in (body or mark).splitlines()
-                                   if kind != "console" or line.startswith(("$ ", "> ")))
-                         for kind, body, mark in blocks).encode()
-    return path.read_bytes()
-
-
-def files_of(patterns):
-    found = []
-    for pattern in patterns:
-        matched = sorted(p for p in ROOT.glob(pattern) if p.is_file())
-        if not matched:
-            sys.exit(f"{LIST.relative_to(ROOT)}: {pattern} matches no file (it is named as what a picture is made of). "
-                     "Correct the name")
-        found += matched
-    return sorted(set(found))
-
-
-def stamp_of(patterns):
-    digest = hashlib.sha256()
-    for path in files_of(patterns):
-        digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + content_of(path) + b"\0")
-    return digest.hexdigest()[:16]
-
-
 def read_list():
     return json.loads(LIST.read_text(encoding="utf-8"))
-
-
-def write_list(entries):
-    LIST.write_text(json.dumps(entries, indent=2) + "\n", encoding="utf-8")
-
-
-def check():
-    """Every picture has an entry and every entry a picture, and nothing that it is made of has changed since."""
-    entries, faults = read_list(), []
-    for picture in sorted(p.name for p in FOLDER.glob("*.png")):
-        if picture not in entries:
-            faults.append(f"docs/pictures/{picture} has no entry in pictures.json: say what it is made of")
-    for picture, entry in entries.items():
-        if not (FOLDER / picture).exists():
-            faults.append(f"docs/pictures/{picture} is missing. Make it: make pictures PICTURES={picture}")
-        elif stamp_of(entry["from"]) != entry["stamp"]:
-            faults.append(f"docs/pictures/{picture} is stale: one of {', '.join(entry['from'])} has changed since "
-                          f"it was made. Make it anew and look at it: make pictures PICTURES={picture}")
-    if faults:
-        sys.exit("\n".join(faults))
-    print(f"{len(entries)} pictures are those of what they are made of")
 
 
 def call(words, **more):
@@ -187,26 +128,18 @@ def make_all(names, asked):
         for picture in pictures:
             if kind != "script":
                 shrink(FOLDER / picture)
-            entries[picture]["stamp"] = stamp_of(entries[picture]["from"])
             print(FOLDER / picture)
-        write_list(entries)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
     parser.add_argument("names", nargs="*")
-    parser.add_argument("--bin", type=pathlib.Path)
-    parser.add_argument("--work", type=pathlib.Path)
+    parser.add_argument("--bin", type=pathlib.Path, required=True)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path)
-    parser.add_argument("--check", action="store_true")
     asked = parser.parse_args()
-    if asked.check:
-        check()
-    elif asked.bin and asked.work:
-        asked.work.mkdir(parents=True, exist_ok=True)
-        make_all(asked.names, asked)
-    else:
-        parser.error("name --bin and --work, or --check")
+    asked.work.mkdir(parents=True, exist_ok=True)
+    make_all(asked.names, asked)
 
 
 if __name__ == "__main__":
