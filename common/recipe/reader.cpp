@@ -202,6 +202,10 @@ void Reader::path(std::string_view key, fs::path& value, std::string_view) {
 bool Reader::is_one_of(const toml::node& node, std::string_view key, const std::string& word,
                        const std::vector<std::string_view>& names) {
   if (std::find(names.begin(), names.end(), word) != names.end()) return true;
+  if (const std::string_view advice = walk_.advice_on_word(key.substr(0, key.find('[')), word); !advice.empty()) {
+    walk_.add(node, key, "no longer a choice", std::string(advice));
+    return false;
+  }
   const std::string near = nearest(word, {names.begin(), names.end()});
   walk_.add(node, key, "no such choice",
             (near.empty() ? "" : fmt::format("Did you mean \"{}\"? ", near)) + "It must be " + names_text(names));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "common/recipe/gone_keys.hpp"
 #include "common/recipe/overrides.hpp"
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/shown_paths.hpp"
@@ -99,10 +100,13 @@ std::unique_ptr<Visitor> Recipe::make_reader(std::string_view stage, std::vector
   const std::vector<std::string> tables(std::begin(known_tables), std::end(known_tables));
   for (const auto& [key, node] : parsed_->root) {
     if (std::find(tables.begin(), tables.end(), key.str()) != tables.end()) continue;
-    const std::string kind = node.is_table() ? "table" : "key";
+    const std::string kind = node.is_table() ? "table" : "key", at = place(parsed_->shown, key.source());
+    if (const std::string_view advice = advice_on_gone(key.str()); !advice.empty()) {
+      faults.push_back({fmt::format("{}: [{}]: no longer a table", at, key.str()), "", std::string(advice)});
+      continue;
+    }
     faults.push_back(
-        {fmt::format("{}: unknown top-level {} \"{}\"", place(parsed_->shown, key.source()), kind, key.str()), "",
-         did_you_mean(key.str(), tables)});
+        {fmt::format("{}: unknown top-level {} \"{}\"", at, kind, key.str()), "", did_you_mean(key.str(), tables)});
   }
   const fs::path folder = parsed_->file.parent_path();
   Scene scene;

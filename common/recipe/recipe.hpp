@@ -67,9 +67,9 @@ class Visitor {
   /// false. Only find_unmet() looks, at options that have been read in full, so that the others may come later in the
   /// visit.
   virtual void needs(bool /*met*/, const Fault& /*otherwise*/) {}
-  /// A key of earlier versions: a recipe that holds it is refused, with the key and the value that take its place.
-  /// `new_value` makes the value of the old one's text where unit or words changed (empty: no value is the same);
-  /// null: the value stays.
+  /// A key that has another name now: a recipe that holds it is refused, with the key and the value that take its
+  /// place. `new_value` makes the value of the old one's text where unit or words changed (empty: no value is the
+  /// same); null: the value stays. Keys without such a successor are listed in gone_keys.cpp.
   virtual void renamed(std::string_view /*old_key*/, std::string_view /*key*/,
                        const std::function<std::string(const std::string&)>& /*new_value*/) {}
 };

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "common/recipe/gone_keys.hpp"
 #include "common/recipe/suggest.hpp"
 #include "common/recipe/values.hpp"
 
@@ -68,7 +69,7 @@ void Walk::pop_table() {
   if (frame.table != nullptr) {
     for (const auto& [key, node] : *frame.table)
       if (!contains(frame.known, key.str()) && !contains(frame.renamed, key.str()))
-        unknown_.push_back({std::string(key.str()), frame.name, key.source(), frame.known});
+        unknown_.push_back({std::string(key.str()), frame.name, frame.path, key.source(), frame.known});
   }
   frames_.pop_back();
 }
@@ -100,6 +101,10 @@ const toml::node* Walk::find_renamed(std::string_view old_key) {
   return frame.table == nullptr ? nullptr : frame.table->get(old_key);
 }
 
+std::string_view Walk::advice_on_word(std::string_view key, std::string_view word) const {
+  return advice_on_gone(fmt::format("{}.{}={}", frames_.back().path, key, word));
+}
+
 void Walk::add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend) {
   const std::string& table = frames_.back().name;
   const std::string name = table.empty() ? std::string(key) : fmt::format("{} {}", table, key);
@@ -120,6 +125,12 @@ void Walk::finish() {
   while (frames_.size() > 1) pop_table();
   for (const auto& unknown : unknown_) {
     const std::string at = place(shown_, unknown.source);
+    const std::string_view advice = advice_on_gone(unknown.table_path + "." + unknown.key);
+    if (!advice.empty()) {
+      const std::string what = fmt::format("{}: {} {}: no longer a key", at, unknown.table_name, unknown.key);
+      faults_.push_back({unknown.source.begin, {what, "", std::string(advice)}});
+      continue;
+    }
     const std::string what = fmt::format("{}: unknown key \"{}\" in {}", at, unknown.key, unknown.table_name);
     faults_.push_back({unknown.source.begin, {what, "", mend_for(unknown)}});
   }

@@ -31,6 +31,9 @@ class Walk {
   /// The value of a key that is refused by its old name, or null; it is neither unknown nor offered as a suggestion.
   const toml::node* find_renamed(std::string_view old_key);
 
+  /// The advice on a word that a choice in the table at hand had in earlier versions; empty: it never had.
+  std::string_view advice_on_word(std::string_view key, std::string_view word) const;
+
   /// A fault at a value: "recipe.toml:3:8: [solve] steps = 0 (why). mend".
   void add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend);
 
@@ -56,7 +59,7 @@ class Walk {
     Fault fault;
   };
   struct Unknown {
-    std::string key, table_name;
+    std::string key, table_name, table_path;
     toml::source_region source;
     std::vector<std::string> known;
   };

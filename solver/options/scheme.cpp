@@ -24,7 +24,6 @@ void SchemeOptions::describe(recipe::Visitor& v) {
   v.optional_number("transfer_time_s", transfer_time, recipe::not_negative,
                     "time over which velocity finer than the grid decays; 0: at every step; none: 0.3 of the root of "
                     "layer height over gravity");
-  v.renamed("flip_fraction", "transfer_time_s", [](const std::string&) { return std::string(); });
   recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
                  "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
   v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/recipe/gone_keys.hpp"
+
+namespace talus::recipe {
+namespace {
+
+struct GoneKey {
+  std::string_view place;   ///< "table.key", or "table.key=word" of a choice
+  std::string_view advice;  ///< what to do instead, an imperative without a full stop
+};
+
+constexpr GoneKey gone_keys[] = {
+    {"solve.flip_fraction", "Give transfer_time_s, the time over which velocity finer than the grid decays"},
+    {"solve.implicit.linear_solver=bicgstab", "Take linear_solver = \"pcg\""},
+};
+
+}  // namespace
+
+std::string_view advice_on_gone(std::string_view place) {
+  for (const GoneKey& gone : gone_keys) {
+    if (gone.place == place) return gone.advice;
+  }
+  return {};
+}
+
+}  // namespace talus::recipe
