@@ -118,24 +118,8 @@ VARIANTS = {
     "newmark-samosat": ('integrator = "newmark"', '[solve.base]\nlaw = "samosat"\n', {}),
     "newmark-musl-flip": ('integrator = "newmark"\nstress_update = "musl"\ntransfer = "flip"\ndamping = 0.05', "", {}),
     "newmark-points": ('integrator = "newmark"\nmapping = "cartesian"\nground_contact = "points"', "", {}),
-    "newmark-exact": (
-        'integrator = "newmark"',
-        '[solve.implicit]\ntangent = "exact"\n' 'linear_solver = "bicgstab"\n',
-        {},
-    ),
     "newmark-cholesky": ('integrator = "newmark"', '[solve.implicit]\nlinear_solver = "cholesky"\n', {}),
-    "newmark-stencil-multigrid": (
-        'integrator = "newmark"',
-        '[solve.implicit]\noperator = "stencil"\n' 'preconditioner = "multigrid"\n',
-        {},
-    ),
-    "newmark-elements-column": (
-        'integrator = "newmark"',
-        '[solve.implicit]\noperator = "elements"\n' 'preconditioner = "column"\nforcing = "fixed"\n',
-        {},
-    ),
-    "newmark-gauss-seidel": ('integrator = "newmark"', '[solve.implicit]\npreconditioner = "gauss-seidel"\n', {}),
-    "newmark-diagonal": ('integrator = "newmark"', '[solve.implicit]\npreconditioner = "diagonal"\n', {}),
+    "newmark-fixed-forcing": ('integrator = "newmark"', '[solve.implicit]\nforcing = "fixed"\n', {}),
     "newmark-b-bar": (
         'integrator = "newmark"',
         "[solve.implicit]\nb_bar = true\n[solve.material]\n" "poisson_ratio = 0.45\n",

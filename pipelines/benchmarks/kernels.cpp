@@ -101,7 +101,6 @@ SolveOptions options_for(const KernelSetting& k) {
     o.implicit.newmark_beta = 1;
     o.implicit.newton_tolerance = 1e-4;
     o.implicit.linear_tolerance = 1e-3;
-    o.implicit.operator_ = k.shape == ShapeKind::linear ? Operator::stencil : Operator::points;
   }
   return o;
 }

@@ -38,7 +38,6 @@ struct Constraints {
   ContactChanges* changes = nullptr;  ///< in this step
   double slip = 0;                    ///< over which friction grows to its limit, for nodes that changed too often [m]
   double head_start = 0;              ///< slip that a node which starts to slip has made already [m]
-  bool coupled = false;               ///< the friction's derivative holds that of the reaction: not symmetric
   const double* pull = nullptr;       ///< a contact opens when it would have to pull by more than this, or rounding
                                       ///< would open it [N]
 

@@ -141,7 +141,6 @@ class ContactSet {
             .changes = fields_.changes.data(),
             .slip = smoothing_.slip(),
             .head_start = smoothing_.head_start(),
-            .coupled = parts_.controls.tangent == Tangent::exact,
             .pull = pull_};
   }
 

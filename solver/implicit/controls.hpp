@@ -4,16 +4,10 @@
 // in this folder knows those. What all integrators read is in integrator/settings.hpp.
 #pragma once
 
-#include "solver/linear/operator/operator_form.hpp"
-#include "solver/linear/preconditioner/preconditioner_kind.hpp"
-
 namespace talus::solver {
 
-/// How linear systems are solved: by conjugate gradients, BiCGSTAB, or a factorisation.
-enum class LinearSolver { pcg, bicgstab, cholesky };
-/// Which derivative of the stress Newton's method takes: symmetric, the yield stress held where a point flows, or the
-/// exact one, which is not symmetric (T17).
-enum class Tangent { frozen_yield, exact };
+/// How linear systems are solved: by conjugate gradients, or a factorisation.
+enum class LinearSolver { pcg, cholesky };
 /// How exactly linear systems are solved: always to the same tolerance, or as Newton's iterations get on (Eisenstat &
 /// Walker 1996).
 enum class Forcing { fixed, eisenstat_walker };
@@ -34,9 +28,8 @@ struct NewtonControls {
 /// How the linear system of an iteration is solved.
 struct LinearControls {
   LinearSolver solver = LinearSolver::pcg;
-  int iterations = 5000;  ///< of a Krylov method, at most
-  Operator form = Operator::points;
-  Preconditioner preconditioner = Preconditioner::block;
+  int iterations = 5000;   ///< of conjugate gradients, at most
+  bool reference = false;  ///< as in the reference paper: stored element matrices, preconditioned by the diagonal
 };
 
 /// How implicit steps are taken.
@@ -47,7 +40,6 @@ struct ImplicitControls {
   double alpha = 0.25, beta = 0.5;  ///< Newmark's numbers [-]
   NewtonControls newton;
   LinearControls linear;
-  Tangent tangent = Tangent::frozen_yield;
   double apex = 0.1;     ///< rounding of the cone's tip (T15b), in weights of a cell [-]
   bool b_bar = false;    ///< means over the elements of the volume change (T17b)
   double filler = 1e-3;  ///< stiffness of the springs (T17a) on nearly empty nodes in statics, over a full cell's [-]

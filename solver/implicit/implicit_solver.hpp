@@ -92,13 +92,13 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     return n;
   }
 
-  /// The controls; the materials learn from them which tangent is asked for, and how round the cone's tip is (T15b).
+  /// The controls; the materials learn from them how round the cone's tip is (T15b).
   const ImplicitControls& with_materials(const ImplicitControls& c, double layer_height) {
     const Vec3<double>& gravity = settings_.gravity.acceleration;
     const double g = std::hypot(gravity.x, gravity.y, gravity.z);
     for (Material<Real>& m : materials_.list) {
       const double apex = c.apex * static_cast<double>(m.density) * g * layer_height;
-      prepare_for_newton(m, static_cast<Real>(apex), c.tangent == Tangent::exact);
+      prepare_for_newton(m, static_cast<Real>(apex));
     }
     return c;
   }

@@ -59,11 +59,7 @@ struct MeasureResidual {
     }
     Vec3<double> force = nodes.external[n] - nodes.internal[n];
     bool changed = false;
-    if (nodes.touch[n] != Touch::none && decide) {
-      changed = contacts.decide(n, force);
-    } else if (nodes.touch[n] == Touch::slips && held.coupled) {
-      held.limit[n] = contacts.limit_of(n, contacts.stopping_force(n, force));
-    }
+    if (nodes.touch[n] != Touch::none && decide) changed = contacts.decide(n, force);
     if (contacts.scheme.dynamic) force += contacts.scheme.deceleration(nodes, n) * m;
     if (nodes.touch[n] == Touch::slips) force += held.friction_force(n, nodes.u[n], nullptr);
     const Vec3<double> r = nodes.freed[n] * force;
@@ -115,11 +111,8 @@ struct CloseProduct {
     Vec3<double> sum = y[n] + x[n] * (nodes.mass[n] * inertia);
     if (nodes.touch[n] == Touch::slips && held.limit[n] > 0) {
       Sym3<double> stiffness;
-      const Vec3<double> force = held.friction_force(n, nodes.u[n], &stiffness);
-      // The reaction changes by n . sum, and the friction with it.
-      const Vec3<double> share =
-          held.coupled ? force * (dot(held.normal[n], sum) * held.friction[n] / held.limit[n]) : Vec3<double>{};
-      sum += stiffness * x[n] - share;
+      held.friction_force(n, nodes.u[n], &stiffness);
+      sum += stiffness * x[n];
     }
     y[n] = nodes.freed[n] * sum;
   }

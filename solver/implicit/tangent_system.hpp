@@ -8,7 +8,6 @@
 #include "solver/implicit/line_search.hpp"
 #include "solver/implicit/particle_stresses.hpp"
 #include "solver/linear/direct/cholesky_solver.hpp"
-#include "solver/linear/krylov/bicgstab.hpp"
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
@@ -30,22 +29,18 @@ class TangentSystem {
         nodes_(nodes),
         contacts_(contacts),
         stresses_(parts, nodes.mass),
-        operator_(parts.device, parts.controls.linear.form,
-                  ParticleStresses<Real, Device, Shape>::rounds(parts.controls)),
-        preconditioner_(parts.device, parts.controls.linear.preconditioner) {}
+        operator_(parts.device, parts.controls.linear.reference),
+        preconditioner_(parts.device, parts.controls.linear.reference) {}
 
   /// The method takes particles that have moved or have been sorted: elements and neighbours anew, where anything goes
   /// by them.
   void group() {
-    const LinearControls& c = parts_.controls.linear;
-    const bool preconditioned = !direct() && NodePreconditioner<Real, Device, Shape>::by_elements(c.preconditioner);
-    if (parts_.controls.dynamic && !direct() && !preconditioned && c.form == Operator::points && !parts_.controls.b_bar)
-      return;
+    if (parts_.controls.dynamic && !direct() && !parts_.controls.linear.reference && !parts_.controls.b_bar) return;
     stresses_.group();
     if (direct()) {
       cholesky_.begin_step(stresses_.elements());
     } else {
-      operator_.begin_step(stresses_.elements(), parts_.grid.nodes());
+      operator_.begin_step(stresses_.elements());
     }
   }
   /// The method makes room for the tangents, and takes the scheme of the step.
@@ -68,9 +63,7 @@ class TangentSystem {
     const KrylovLimits limits{.tolerance = tolerance,
                               .iterations = parts_.controls.linear.iterations,
                               .give_up = parts_.controls.newton.give_up};
-    Product product{*this};
-    return parts_.controls.linear.solver == LinearSolver::pcg ? cg_.solve(product, preconditioner_, b, x, limits)
-                                                              : bicgstab_.solve(product, preconditioner_, b, x, limits);
+    return cg_.solve(Product{*this}, preconditioner_, b, x, limits);
   }
 
   /// The stresses of the particles and what they are made with.
@@ -81,17 +74,17 @@ class TangentSystem {
   void list_memory(Add&& add) const {
     add("tangents", stresses_.tangent_bytes());
     add("elements", stresses_.elements().bytes());
-    add("operator", operator_.bytes());
+    add("element matrices", operator_.bytes());
     add("preconditioner", preconditioner_.bytes());
-    add("Krylov vectors", cg_.bytes() + bicgstab_.bytes());
+    add("Krylov vectors", cg_.bytes());
     add("factor and its matrix", cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes()));
   }
 
  private:
-  /// The tangent as Krylov methods take it (krylov/contract.hpp).
+  /// The tangent as conjugate gradients take it; see LinearOperator.
   struct Product {
     TangentSystem& system;
-    /// The product with particles and contact points; see LinearOperator.
+    /// The product with particles and contact points.
     void add_product(const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted) {
       system.operator_.apply(x, y, halted);
       system.contacts_.apply(x, y);
@@ -128,10 +121,8 @@ class TangentSystem {
 
   void refresh() {
     const ProfilePhase<Device> phase(parts_.device, "operator and preconditioner");
-    const SparseGrid<Real, Device>& grid = parts_.grid;
-    preconditioner_.refresh(stresses_.view(), grid.groups(), stresses_.elements(),
-                            {grid.view(), grid.active_list(), grid.active_blocks()}, held_nodes());
-    operator_.refresh(stresses_.view(), grid.groups());
+    preconditioner_.refresh(stresses_.view(), parts_.grid.groups(), stresses_.elements(), held_nodes());
+    operator_.refresh(stresses_.view(), parts_.grid.groups());
   }
 
   const Parts& parts_;
@@ -142,7 +133,6 @@ class TangentSystem {
   TangentOperator<Real, Device, Shape> operator_;
   NodePreconditioner<Real, Device, Shape> preconditioner_;
   ConjugateGradient<Device> cg_{parts_.device};
-  BiCgStab<Device> bicgstab_{parts_.device};
   CholeskySolver<Real, Device, Shape> cholesky_{parts_.device};
 };
 

@@ -12,7 +12,7 @@
 //                             law's own, for MaterialOptions has those of all laws
 //   Options::internal_friction  only where the strength is friction: its coefficient in slow shear
 //   words, sentence           the material in a line for plan and log, and in a sentence of the report ("It is ...")
-//   Numbers<Real>, numbers()  what kernels see of the options; soften(), round_tip(), couple_pressure()
+//   Numbers<Real>, numbers()  what kernels see of the options; soften(), round_tip()
 //   stress, energy            Kirchhoff stress [Pa] and elastic energy per initial volume [J/m3] of a state
 //   settle, respond           where keeps_strain: end of a step whose trial strain is in the state; principal stresses
 //                             of a trial and their derivatives. Both are given the length of the step

@@ -65,13 +65,10 @@ TALUS_HD Material<Real, Laws> softened(Material<Real, Laws> m, Real plastic_shea
 }
 
 /// This function prepares a material for implicit steps: the pressure over which the tip of a cone is rounded [Pa]
-/// (T15b), and whether the tangent takes along what pressure does to friction.
+/// (T15b).
 template <class Real, class Laws>
-void prepare_for_newton(Material<Real, Laws>& m, Real apex, bool exact_tangent) {
-  m.change_law([&](auto, auto& numbers) {
-    numbers.round_tip(apex);
-    numbers.couple_pressure(exact_tangent);
-  });
+void prepare_for_newton(Material<Real, Laws>& m, Real apex) {
+  m.change_law([&](auto, auto& numbers) { numbers.round_tip(apex); });
 }
 
 /// The materials of a scene, of the laws `Laws`. A scene of one that does not soften has no arrays on its points, and

@@ -57,43 +57,20 @@ void ImplicitOptions::describe_newton(recipe::Visitor& v) {
   v.optional_number(
       "newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true},
       "unbalanced force over the forces' size; left out: 1e-2 for newmark's steps of what flows, else 1e-6");
-  recipe::choice(
-      v, "tangent", tangent, {{"frozen-yield", Tangent::frozen_yield}, {"exact", Tangent::exact}},
-      "frozen-yield: symmetric, friction at the pressure of the last iteration; exact: not symmetric, needs bicgstab");
-  v.needs(tangent == Tangent::frozen_yield || linear_solver == LinearSolver::bicgstab,
-          {"[solve.implicit] tangent = \"exact\" does not go with this linear_solver",
-           "the exact tangent is not symmetric", "Take linear_solver = \"bicgstab\""});
-  v.needs(tangent == Tangent::frozen_yield || !b_bar,
-          {"[solve.implicit] tangent = \"exact\" does not go with b_bar",
-           "the mean volume change is in the symmetric tangent alone", "Take tangent = \"frozen-yield\""});
 }
 
 void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& all) {
-  recipe::choice(
-      v, "linear_solver", linear_solver,
-      {{"pcg", LinearSolver::pcg}, {"bicgstab", LinearSolver::bicgstab}, {"cholesky", LinearSolver::cholesky}},
-      "conjugate gradients, or stabilised bi-conjugate ones, never assembled; or sparse Cholesky");
-  const bool takes_contact = linear_solver == LinearSolver::pcg || linear_solver == LinearSolver::bicgstab;
-  v.needs(takes_contact || !abilities_of(all.asked_integrator()).solve_systems || !all.meets_points(),
-          {all.contact_words() + " does not go with [solve.implicit] linear_solver = \"cholesky\"",
-           "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
-  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true},
-           "pcg, bicgstab: residual over right-hand side");
+  recipe::choice(v, "linear_solver", linear_solver, {{"pcg", LinearSolver::pcg}, {"cholesky", LinearSolver::cholesky}},
+                 "preconditioned conjugate gradients without an assembled matrix, or sparse Cholesky factorisation");
+  v.needs(
+      linear_solver == LinearSolver::pcg || !abilities_of(all.asked_integrator()).solve_systems || !all.meets_points(),
+      {all.contact_words() + " does not go with [solve.implicit] linear_solver = \"cholesky\"",
+       "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
+  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true}, "pcg: residual over right-hand side");
   recipe::choice(v, "forcing", forcing, {{"eisenstat-walker", Forcing::eisenstat_walker}, {"fixed", Forcing::fixed}},
                  "eisenstat-walker: no more exact than Newton's iteration can use, linear_tolerance at the finest; "
                  "fixed: always linear_tolerance");
   v.integer("linear_iterations", linear_iterations, recipe::Range{1, 1e9}, "pcg: most iterations");
-  recipe::choice(v, "operator", operator_,
-                 {{"points", Operator::points}, {"elements", Operator::elements}, {"stencil", Operator::stencil}},
-                 "pcg: the tangent's product point by point, by stored elements, or by assembled blocks");
-  recipe::choice(v, "preconditioner", preconditioner,
-                 {{"block", Preconditioner::block},
-                  {"column", Preconditioner::column},
-                  {"diagonal", Preconditioner::diagonal},
-                  {"gauss-seidel", Preconditioner::gauss_seidel},
-                  {"multigrid", Preconditioner::multigrid}},
-                 "pcg, bicgstab: the diagonal, 3 x 3 blocks, whole columns of nodes, Gauss-Seidel over columns, or "
-                 "multigrid with that");
 }
 
 NewtonScheme scheme_of(const SolveOptions& o) {

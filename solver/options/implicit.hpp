@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of implicit steps: Newton, its linear solver and preconditioner.
+// Options of implicit steps: Newton and its linear solver.
 #pragma once
 
 #include <optional>
@@ -18,13 +18,10 @@ struct ImplicitOptions {
   std::optional<double> newmark_alpha, newmark_beta;  ///< none: those of scheme_of()
   int newton_iterations = 30;                         ///< 1: the single linear solve of the reference paper
   std::optional<double> newton_tolerance;  ///< unbalanced force over the forces' size; none: that of scheme_of()
-  Tangent tangent = Tangent::frozen_yield;
   LinearSolver linear_solver = LinearSolver::pcg;
   double linear_tolerance = 1e-8;
   Forcing forcing = Forcing::eisenstat_walker;
   int linear_iterations = 5000;
-  Operator operator_ = Operator::points;
-  Preconditioner preconditioner = Preconditioner::block;
   int step_cuts = 8;     ///< halvings before giving up
   double apex = 0.1;     ///< rounding of the cone's tip, in weights of a cell
   bool b_bar = false;    ///< element means of the volume change

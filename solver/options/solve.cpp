@@ -122,8 +122,6 @@ SolveOptions with_preset(SolveOptions o) {
   o.implicit.newmark_beta = 0.5;
   o.implicit.newton_tolerance = o.implicit.newton_tolerance.value_or(1e-6);  // of contacts: there is one linear solve
   o.implicit.newton_iterations = 1;
-  o.implicit.operator_ = Operator::elements;
-  o.implicit.preconditioner = Preconditioner::diagonal;
   return o;
 }
 

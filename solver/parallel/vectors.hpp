@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors over the nodes (three doubles each) and the few verbs that Krylov methods are written in.
+// Vectors over the nodes (three doubles each) and their sums and copies.
 #pragma once
 
 #include "solver/parallel/algorithms.hpp"
@@ -37,13 +37,6 @@ template <class Device>
 void copy(const NodeVector<Device>& x, NodeVector<Device>& y) {
   y.resize(x.size());
   for_each(y.device(), static_cast<int>(x.size()), detail::Copy{x.data(), y.data()});
-}
-
-/// The scalar product of two vectors of one size; waits for the device.
-template <class Device>
-double dot(const NodeVector<Device>& x, const NodeVector<Device>& y) {
-  return inner_product(x.device(), reinterpret_cast<const double*>(x.data()), reinterpret_cast<const double*>(y.data()),
-                       3 * static_cast<int>(x.size()));
 }
 
 }  // namespace talus

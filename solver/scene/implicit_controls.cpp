@@ -21,9 +21,7 @@ ImplicitControls make_implicit_controls(const SolveOptions& options) {
                      .give_up = interrupted},
           .linear = {.solver = o.linear_solver,
                      .iterations = o.linear_iterations,
-                     .form = o.operator_,
-                     .preconditioner = o.preconditioner},
-          .tangent = o.tangent,
+                     .reference = options.preset == Preset::reference},
           .apex = o.apex,
           .b_bar = o.b_bar,
           .filler = o.filler};

@@ -15,7 +15,6 @@
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
-#include "solver/linear/preconditioner/preconditioner_kind.hpp"
 #include "solver/material/point_tangent.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/tiles.hpp"
@@ -230,15 +229,6 @@ struct LinearBench {
       }
     }
   }
-  /// Frees the columns whose numbers are multiples of `pitch` in both directions, and holds the others.
-  void hold_all_columns_but_one_in(int pitch) {
-    const auto m = mass.download();
-    std::vector<Sym3<double>> p(m.size());
-    for_nodes([&](int i, int j, int, std::size_t n) {
-      if (m[n] > 0 && i % pitch == 0 && j % pitch == 0) p[n] = {1, 1, 1, 0, 0, 0};
-    });
-    freed.upload(p);
-  }
   /// The base nodes slide on level ground, all others are free.
   void lay_down() {
     free_all();
@@ -259,13 +249,13 @@ struct LinearBench {
     mass.upload(m);
   }
 
-  /// K x in one form. `single`: tangents or stencil stored in single precision.
-  std::vector<Vec3<double>> product(Operator form, bool single = false) {
-    TangentOperator<Real, Device, Shape> op(device, form, single);
-    op.begin_step(elements, count);
+  /// K x point by point, by tangents in single precision where `single`, or by stored element matrices.
+  std::vector<Vec3<double>> product(bool stored = false, bool single = false) {
+    TangentOperator<Real, Device, Shape> op(device, stored);
+    op.begin_step(elements);
     PointTangents<Real> tangents_of_points = from();
     Buffer<float, Device> narrow(device);
-    if (single && form == Operator::points) {
+    if (single) {
       narrow.resize(tangents.size());
       tangents_of_points.tangents = {nullptr, points.count(), narrow.data()};
       for_each(device, points.count(), CopyTangent<Real>{store(), tangents_of_points.tangents});
@@ -289,15 +279,13 @@ struct LinearBench {
     return b;
   }
 
-  std::vector<Vec3<double>> by_gradients(Preconditioner kind = Preconditioner::block, int* iterations = nullptr,
-                                         double tolerance = 1e-12) {
+  std::vector<Vec3<double>> by_gradients(bool diagonal = false, int* iterations = nullptr, double tolerance = 1e-12) {
     NodeVector<Device> x(device);
     const NodeVector<Device> b = right_side();
-    NodePreconditioner<Real, Device, Shape> preconditioner(device, kind);
-    preconditioner.refresh(from(), grid.groups(), elements, {grid.view(), grid.active_list(), grid.active_blocks()},
-                           held());
-    TangentOperator<Real, Device, Shape> op(device, Operator::points);
-    op.begin_step(elements, count);
+    NodePreconditioner<Real, Device, Shape> preconditioner(device, diagonal);
+    preconditioner.refresh(from(), grid.groups(), elements, held());
+    TangentOperator<Real, Device, Shape> op(device, false);
+    op.begin_step(elements);
     op.refresh(from(), grid.groups());
     ConjugateGradient<Device> cg(device);
     struct Product {

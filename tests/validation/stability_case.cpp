@@ -30,11 +30,6 @@ double end_of(const Outcome& o, const Sand& s) {
   return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN();
 }
 
-struct TangentScheme {
-  const char* tangent;
-  const char* linear_solver;
-};
-
 /// Runs on one grid, judged by explicit steps of a tenth of the CFL step; on the coarse one by a quarter, and the reach
 /// to a cell of its tip, 8 %.
 class ShortSteps {
@@ -75,17 +70,14 @@ class ShortSteps {
 };
 
 /// Newmark steps of these lengths [CFL steps].
-Series newmark_line(const ShortSteps& against, const TangentScheme& scheme, const std::vector<double>& lengths,
-                    int colour) {
+Series newmark_line(const ShortSteps& against, const std::vector<double>& lengths, int colour) {
   const double cfl_step = 4.27e-4 * against.sand().h / 0.0225;  // cell over wave speed and square root of three [s]
   Bench& bench = against.bench();
-  Series line{fmt::format("newmark, {} tangent", scheme.tangent), {}, {}, colour};
+  Series line{"newmark", {}, {}, colour};
   line.marks = true;
   for (const double over_cfl : lengths) {
-    const Outcome o = against.run(fmt::format("{}, {:g} CFL", scheme.tangent, over_cfl),
-                                  {{"solve.implicit.step_s", over_cfl * cfl_step},
-                                   {"solve.implicit.tangent", words(scheme.tangent)},
-                                   {"solve.implicit.linear_solver", words(scheme.linear_solver)}});
+    const Outcome o =
+        against.run(fmt::format("newmark, {:g} CFL", over_cfl), {{"solve.implicit.step_s", over_cfl * cfl_step}});
     const double cuts = o.last_of("step_cuts"), steps = static_cast<double>(o.run.summary.steps);
     line.x.push_back(over_cfl);
     line.y.push_back(against.judge(o, over_cfl > 20 ? 0.1 : 0.03));  // 30 CFL need only finish (validation.md C1)
@@ -117,14 +109,12 @@ void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengt
   chart.x_label = "step over the CFL step";
   chart.y_label = fmt::format("difference to explicit steps of {:g} CFL [%]", against.shortest());
   chart.log_x = true;
-  int colour = 1;
-  for (const TangentScheme& scheme : {TangentScheme{"frozen-yield", "pcg"}, {"exact", "bicgstab"}})
-    chart.series.push_back(newmark_line(against, scheme, lengths, colour++));
+  chart.series.push_back(newmark_line(against, lengths, 1));
   const bool coarse = bench.coarse();
   const std::vector<double> short_ones = coarse ? std::vector<double>{0.5} : std::vector<double>{0.25, 0.5},
                             by_columns = coarse ? std::vector<double>{1.5} : std::vector<double>{0.5, 1, 1.5};
   chart.series.push_back(cfl_line(against, {"explicit", {against.shortest()}, {0}, 0}, short_ones, 0.02));
-  chart.series.push_back(cfl_line(against, {"column-implicit", {}, {}, colour}, by_columns, 0.03));
+  chart.series.push_back(cfl_line(against, {"column-implicit", {}, {}, 2}, by_columns, 0.03));
   bench.picture(fmt::format("C1-centre-{:g}", s.h), png_of(chart));
 }
 

@@ -69,12 +69,6 @@ struct FinishCurvature {
     if (state->halt == CgState::no) state->take_curvature(*total);
   }
 };
-struct FinishResidual {
-  CgState* state;
-  TALUS_HD void operator()(const double* total) const {
-    if (state->halt == CgState::no) state->take_residual(*total);
-  }
-};
 struct FinishResidualAndAngle {
   CgState* state;
   TALUS_HD void operator()(const double* total) const {
@@ -126,25 +120,6 @@ struct StepAlong {
     const Vec3<double> rest = r[n] - ap[n] * alpha;
     r[n] = rest;
     return dot(rest, rest);
-  }
-};
-
-/// The step alone, for a preconditioner that needs all of it first. One thread: one node.
-struct MeasuredStep {
-  using Named = StepAlong;
-  double bytes(int count) const { return step.bytes(count); }
-  StepAlong step;
-  TALUS_HD Terms<1> operator()(int n) const {
-    return step.state->halt == CgState::no ? Terms<1>{{step(n)}} : Terms<1>{};
-  }
-};
-
-/// A node's share of r . z, while the loop goes on.
-struct MeasuredAngle {
-  const Vec3<double>*r, *z;
-  const CgState* state;
-  TALUS_HD Terms<1> operator()(int n) const {
-    return state->halt == CgState::no ? Terms<1>{{dot(r[n], z[n])}} : Terms<1>{};
   }
 };
 

@@ -7,11 +7,41 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/linear/krylov/contract.hpp"
+#include "solver/linear/krylov/cg_kernels.hpp"
 #include "solver/linear/krylov/linear_report.hpp"
 #include "solver/parallel/recording.hpp"
 
 namespace talus {
+
+/// A linear operator A over the nodes. `add_product(x, y, halted)` adds to y what takes more than one node, and may do
+/// nothing where *halted is not zero. `closing(x, y)` is a kernel over the nodes that makes y = A x of it: p . A p is
+/// summed in the same sweep.
+template <class A, class Device>
+concept LinearOperator = requires(A& a, const NodeVector<Device>& x, NodeVector<Device>& y, const int* halted) {
+  a.add_product(x, y, halted);
+  a.closing(x, y)(0);
+};
+
+/// A symmetric and positive definite preconditioner B over the nodes. `apply(r, z, state)` leaves z = B^-1 r and hands
+/// r . z to the state of the loop (detail::FinishAngle), or does nothing where that has halted.
+/// `apply_after(step, r, z, state)` does the same after the step that is handed over, and hands r . r to the state
+/// first (detail::FinishResidualAndAngle): a GPU has one kernel less.
+template <class B, class Device>
+concept LinearPreconditioner = requires(B& b, const detail::StepAlong& step, const NodeVector<Device>& r,
+                                        NodeVector<Device>& z, CgState* state) {
+  b.apply(r, z, state);
+  b.apply_after(step, r, z, state);
+};
+
+/// The limits at which conjugate gradients end.
+struct KrylovLimits {
+  double tolerance = 1e-8;  ///< of |b - A x| / |b| [-]
+  int iterations = 5000;    ///< at most
+  /// It is asked now and then whether to end without a solution; null: never.
+  bool (*give_up)() = nullptr;
+  /// Whether to end without a solution.
+  bool gives_up() const { return give_up && give_up(); }
+};
 
 /// The method of preconditioned conjugate gradients with its vectors, kept between solves.
 template <class Device>
@@ -19,7 +49,7 @@ class ConjugateGradient {
  public:
   explicit ConjugateGradient(const Device& device) : device_(device) {}
 
-  /// The method solves A x = b from x = 0, x and b [nodes], A symmetric and positive definite (see contract.hpp). It
+  /// The method solves A x = b from x = 0, x and b [nodes], A symmetric and positive definite. It
   /// ends as `indefinite` where it meets a direction of negative curvature; x is then what it was before that.
   template <LinearOperator<Device> Operator, LinearPreconditioner<Device> Preconditioner>
   LinearReport solve(Operator&& a, Preconditioner&& preconditioner, const NodeVector<Device>& b, NodeVector<Device>& x,

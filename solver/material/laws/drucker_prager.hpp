@@ -61,9 +61,8 @@ struct ConeNumbers {
   Real shear_cohesion = 0;                            ///< [Pa]
   Real tension = 0;                                   ///< largest -p carried [Pa]
   Real residual_friction = 0, residual_cohesion = 0;  ///< slope and shear cohesion once softened
-  Real softening = 0;          ///< share of the way there per plastic shear strain; 0: does not soften [-]
-  Real apex = 0;               ///< pressure over which the tip of the cone is rounded [Pa]
-  bool exact_tangent = false;  ///< with what the volume change does to a yielding point's friction: not symmetric
+  Real softening = 0;  ///< share of the way there per plastic shear strain; 0: does not soften [-]
+  Real apex = 0;       ///< pressure over which the tip of the cone is rounded [Pa]
 
   /// The method sets friction and cohesion on the way to the residual ones, for this plastic shear strain (T15c).
   TALUS_HD void soften(Real plastic_shear) {
@@ -76,8 +75,6 @@ struct ConeNumbers {
   }
   /// The method rounds the tip over this pressure [Pa], for implicit steps.
   void round_tip(Real pressure) { apex = pressure; }
-  /// The method sets whether the tangent takes along what pressure does to friction, for implicit steps.
-  void couple_pressure(bool exact) { exact_tangent = exact; }
 };
 
 /// The pressure p = -trace(tau)/3 (positive in compression) that a point would have without cut-off, over the cut-off,
@@ -238,9 +235,9 @@ struct DruckerPrager {
     s.plastic_log_volume += end.dilation;
   }
 
-  /// The principal stresses of a trial and D_ab. Unless the exact tangent is asked for, the friction of a yielding
-  /// point is held at its current pressure in D (frozen yield), which keeps D symmetric (T17). A trial that lies on the
-  /// cone has the D of its way ahead, the plastic one where that leads out (T17c).
+  /// The principal stresses of a trial and D_ab. The friction of a yielding point is held at its current pressure in D
+  /// (frozen yield), which keeps D symmetric (T17). A trial that lies on the cone has the D of its way ahead, the
+  /// plastic one where that leads out (T17c).
   template <class Real>
   TALUS_HD static void respond(const Elasticity<Real>& m, const Numbers<Real>& cone, const PrincipalTrial<Real>& trial,
                                PrincipalResponse<Real>& out);
@@ -284,14 +281,6 @@ TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Re
     const Real raised = cone.friction * raise * end.give;
     slope = tip ? Real(0) : raised / (m.shear_modulus + raised);
   }
-  // Exact: shear' = slope dS + pull dy, p' = hold dy + lift dS, with y = -K tr(e) the free pressure.
-  Real pull = 0, hold = end.give, lift = 0;
-  if (cone.exact_tangent && flows && !tip) {
-    const Real stiff = m.shear_modulus + cone.friction * raise * end.give;
-    pull = m.shear_modulus * cone.friction * end.give / stiff;
-    hold = end.give * m.shear_modulus / stiff;
-    lift = end.give * raise / stiff;
-  }
   const Real ratio = shear > Real(0) ? left / shear : flows ? Real(0) : Real(1);
   // d(2G s ratio) = 2G [ratio dev + (slope - ratio) n n^T], n = s / |s|
   const Real square = Real(2) * size * size;
@@ -300,9 +289,8 @@ TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Re
     for (int b = 0; b < 3; ++b) {
       const Real along = square > Real(0) ? s[a] * s[b] / square : Real(0);
       Real& d = out.d[3 * a + b];
-      d = m.bulk_modulus * hold +
+      d = m.bulk_modulus * end.give +
           twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
-      if (size > Real(0)) d -= pull * m.bulk_modulus * s[a] / size + lift * m.shear_modulus * s[b] / size;
     }
   }
 }

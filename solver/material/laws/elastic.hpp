@@ -32,7 +32,6 @@ struct ElasticLaw {
     /// There is no tip to round.
     void round_tip(Real) {}
     /// There is no friction that pressure could change.
-    void couple_pressure(bool) {}
   };
   /// The numbers of the law, of which there are none.
   template <class Real>

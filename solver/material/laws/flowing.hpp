@@ -37,15 +37,12 @@ struct FlowingLaw {
 
   /// What the numbers of such a law have in common.
   struct FlowNumbers {
-    bool exact_tangent = false;  ///< with what the volume change does to the strength: not symmetric
     /// Plastic shear strain changes nothing.
     template <class Real>
     TALUS_HD void soften(Real) {}
     /// There is no tip to round: implicit steps do not take these laws.
     template <class Real>
     void round_tip(Real) {}
-    /// The method sets whether the tangent takes along what pressure does to the strength.
-    void couple_pressure(bool exact) { exact_tangent = exact; }
   };
 
   /// K times the volume lost, below 0 where the point has opened [Pa]. What is plastic of the volume change is no loss.
@@ -94,7 +91,8 @@ struct FlowingLaw {
     s.plastic_log_volume += end.dilation;
   }
 
-  /// The principal stresses of a trial and D_ab of (T17).
+  /// The principal stresses of a trial and D_ab of (T17). D_ab holds what the volume change does to the strength, and
+  /// is not symmetric: implicit steps do not take these laws.
   template <class Real, class Numbers>
   TALUS_HD static void respond(const Elasticity<Real>& m, const Numbers& n, const PrincipalTrial<Real>& trial,
                                PrincipalResponse<Real>& out) {
@@ -114,8 +112,7 @@ struct FlowingLaw {
         Real& d = out.d[3 * a + b];
         d = end.hold * stiff +
             twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (end.by_shear - ratio) * along);
-        if (n.exact_tangent && size > Real(0))
-          d -= (end.by_pressure * stiff * s[a] + end.lift * m.shear_modulus * s[b]) / size;
+        if (size > Real(0)) d -= (end.by_pressure * stiff * s[a] + end.lift * m.shear_modulus * s[b]) / size;
       }
     }
   }

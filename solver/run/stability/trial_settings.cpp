@@ -40,7 +40,6 @@ SolverSettings static_settings(const SolveOptions& options, const Scene& scene, 
   s.implicit.dynamic = false;
   s.implicit.step = 1;
   s.implicit.step_cuts = 0;
-  s.implicit.tangent = Tangent::frozen_yield;
   s.implicit.b_bar = true;
   s.implicit.newton.iterations = std::max(s.implicit.newton.iterations, most_iterations);
   s.implicit.newton.tolerance = balanced;

@@ -15,7 +15,6 @@ namespace {
 /// A node with forces on it.
 struct LoadedNode : OneNode {
   Vec3<double> external, internal, residual, arrival, acceleration, change;
-  bool coupled = false;
 
   NodeArrays arrays() {
     NodeArrays n = nodes();
@@ -26,11 +25,7 @@ struct LoadedNode : OneNode {
     n.acceleration = dynamic ? &acceleration : nullptr;
     return n;
   }
-  Constraints constraints() {
-    Constraints c = held();
-    c.coupled = coupled;
-    return c;
-  }
+  Constraints constraints() { return held(); }
   Terms<3> measure(bool decide = false) {
     return MeasureResidual{{arrays(), constraints(), scheme()}, decide, decide ? nullptr : &change}(0);
   }
@@ -82,37 +77,34 @@ TEST(Residual, counts_contacts_that_change) {
 }
 
 TEST(Residual, has_the_closing_product_as_its_derivative) {
-  for (const bool coupled : {false, true}) {
-    for (const bool dynamic : {false, true}) {
-      LoadedNode n;
-      n.dynamic = dynamic;
-      n.coupled = coupled;
-      n.touch = Touch::slips;
-      n.freed = without(whole_space(), n.normal);
-      n.external = {2, 1, -10};
-      n.velocity = {0.3, -0.1, 0};
-      n.direction = {0.6, 0.8, 0};
-      n.u = {2e-4, 3e-4, 0};
-      n.limit = 5;
-      n.measure(true);  // the limit of this displacement
-      const Vec3<double> x{0.7, -0.4, 0};
-      const double h = 1e-9;
-      const auto at = [&](double share) {
-        const Vec3<double> kept = n.u;
-        n.u += x * share;
-        n.measure();
-        n.u = kept;
-        return n.residual;
-      };
-      const Vec3<double> expected = (at(-h) - at(h)) * (0.5 / h);
+  for (const bool dynamic : {false, true}) {
+    LoadedNode n;
+    n.dynamic = dynamic;
+    n.touch = Touch::slips;
+    n.freed = without(whole_space(), n.normal);
+    n.external = {2, 1, -10};
+    n.velocity = {0.3, -0.1, 0};
+    n.direction = {0.6, 0.8, 0};
+    n.u = {2e-4, 3e-4, 0};
+    n.limit = 5;
+    n.measure(true);  // the limit of this displacement
+    const Vec3<double> x{0.7, -0.4, 0};
+    const double h = 1e-9;
+    const auto at = [&](double share) {
+      const Vec3<double> kept = n.u;
+      n.u += x * share;
       n.measure();
-      const Vec3<double> got = n.product(x);
-      const double size = length(expected);
-      EXPECT_GT(size, 100);
-      EXPECT_NEAR(got.x, expected.x, 1e-5 * size) << (coupled ? "coupled" : "") << (dynamic ? ", dynamic" : "");
-      EXPECT_NEAR(got.y, expected.y, 1e-5 * size) << (coupled ? "coupled" : "") << (dynamic ? ", dynamic" : "");
-      EXPECT_EQ(got.z, 0);
-    }
+      n.u = kept;
+      return n.residual;
+    };
+    const Vec3<double> expected = (at(-h) - at(h)) * (0.5 / h);
+    n.measure();
+    const Vec3<double> got = n.product(x);
+    const double size = length(expected);
+    EXPECT_GT(size, 100);
+    EXPECT_NEAR(got.x, expected.x, 1e-5 * size) << (dynamic ? "dynamic" : "static");
+    EXPECT_NEAR(got.y, expected.y, 1e-5 * size) << (dynamic ? "dynamic" : "static");
+    EXPECT_EQ(got.z, 0);
   }
 }
 

@@ -38,7 +38,7 @@ Material<double, Laws> some_material() {
   m.bulk_modulus = 2e7 / 3;
   m.wave_speed = std::sqrt((m.bulk_modulus + 4 * m.shear_modulus / 3) / m.density);
   m.template numbers_of<Law>() = Law::template numbers<double>(typename Law::Options{}, 1.0);
-  prepare_for_newton(m, 0.0, true);
+  prepare_for_newton(m, 0.0);
   return m;
 }
 
@@ -83,13 +83,26 @@ void expect_finite_energy_that_rest_has_not(const Material<double, Laws>& m) {
   }
 }
 
-/// The derivative of the nominal stress against central differences, whose step of 1e-8 leaves an error of 1e-6.
+/// The change of a gradient g of this size that leaves the volume alone: dl = dG F^-1 without trace.
+inline Mat3<double> isochoric(const Mat3<double>& change, const Mat3<double>& g) {
+  const Mat3<double> f{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}};
+  Mat3<double> l{change * inverted(f).a, change * inverted(f).b, change * inverted(f).c};
+  const double third = (l.a.x + l.b.y + l.c.z) / 3;
+  l.a.x -= third;
+  l.b.y -= third;
+  l.c.z -= third;
+  return {l * f.a, l * f.b, l * f.c};
+}
+
+/// The derivative of the nominal stress against central differences, whose step of 1e-8 leaves an error of 1e-6. The
+/// tangent of sand holds its yield stress: it is the derivative where the volume stays.
 template <class Laws>
 void expect_tangent_to_be_the_derivative(const Material<double, Laws>& m) {
   RandomGradient random(12);
+  const bool freezes = visit_law<Laws>(m.model, [](auto law) { return std::is_same_v<decltype(law), DruckerPrager>; });
   for (int n = 0; n < 50; ++n) {
     const MaterialState<double> start = some_state(m, random);
-    const Mat3<double> g = random(1e-3), direction = random(1);
+    const Mat3<double> g = random(1e-3), any = random(1), direction = freezes ? isochoric(any, g) : any;
     constexpr double dt = 0.01, step = 1e-8;
     PointTangent<double> tangent;
     nominal_stress(m, start, g, dt, &tangent);

@@ -43,11 +43,10 @@ double worst_error(const Material<double>& m, const MaterialState<double>& start
   return norm(sum(difference, exact, -1)) / norm(exact);
 }
 
-Material<double> material(MaterialModel model, double dilatancy = 0) {
+Material<double> material(MaterialModel model) {
   MaterialOptions o;
   o.model = model;
   o.friction_angle = 30;
-  o.dilatancy_angle = dilatancy;
   o.youngs_modulus = 1e7;
   o.poisson_ratio = 0.3;
   return make_material<double>(o);
@@ -96,9 +95,10 @@ TEST(Tangent, is_symmetric) {
 
 TEST(Tangent, of_a_yielding_point_is_exact_but_for_the_pressure_in_its_friction) {
   RandomTensors random(4);
-  const auto m = material(MaterialModel::drucker_prager);
+  auto m = material(MaterialModel::drucker_prager);
   int yielding = 0;
-  for (int n = 0; n < 100; ++n) {
+  for (int n = 0; n < 200; ++n) {
+    m.apex = n < 100 ? 0 : 2e3;  // a sharp tip, a rounded one
     MaterialState<double> start;
     start.log_volume = -2e-3;
     const M g = random.matrix(3e-3);
@@ -123,36 +123,6 @@ TEST(Tangent, of_a_yielding_point_is_exact_but_for_the_pressure_in_its_friction)
     EXPECT_LT(worst_error(m, start, g, direction, 1e-8), 1e-5);
   }
   EXPECT_GT(yielding, 10);
-}
-
-TEST(Tangent, of_a_yielding_point_is_exact_where_that_is_asked_for) {
-  // Any direction, dilating or not, sharp or rounded tip, closed or open.
-  for (const double dilatancy : {0.0, 10.0}) {
-    for (const double apex : {0.0, 2e3}) {
-      RandomTensors random(7);
-      auto m = material(MaterialModel::drucker_prager, dilatancy);
-      m.apex = apex;
-      m.numbers_of<DruckerPrager>().exact_tangent = true;
-      int yielding = 0;
-      double worst = 0;
-      for (int n = 0; n < 200; ++n) {
-        MaterialState<double> start;
-        start.log_volume = -2e-3;
-        const M g = random.matrix(3e-3);
-        const double open = start.log_volume + log_volume_change(g);
-        if (apex == 0 && open >= -1e-4) continue;  // the corner itself has no derivative
-        MaterialState<double> end = start;
-        advance_material(m, g, 0.01, end);
-        yielding += end.plastic_log_volume > 0 ||
-                            norm_squared(end.elastic) < 0.999 * norm_squared(deviator(advance_strain(start.elastic, g)))
-                        ? 1
-                        : 0;
-        worst = std::max(worst, worst_error(m, start, g, random.matrix(1), 1e-8));
-      }
-      EXPECT_LT(worst, 2e-5) << "dilatancy " << dilatancy << ", apex " << apex;
-      EXPECT_GT(yielding, 50);
-    }
-  }
 }
 
 TEST(CutPressure, is_rounded_over_the_apex_alone) {

@@ -62,6 +62,18 @@ TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) 
             "Leave energy_budget out");
 }
 
+TEST(SolveOptions, keys_of_deleted_solvers_are_refused_with_advice) {
+  EXPECT_NE(faults("[solve.implicit]\npreconditioner = \"multigrid\"")
+                .find("[solve.implicit] preconditioner: no longer a key. Leave it out; it is the 3 x 3 block of each "
+                      "node, and the diagonal with preset = \"reference\""),
+            std::string::npos);
+  EXPECT_NE(faults("[solve.implicit]\nlinear_solver = \"bicgstab\"").find("(no longer a choice). Take"),
+            std::string::npos);
+  for (const std::string key :
+       {"[solve.implicit]\noperator = \"points\"", "[solve.implicit]\ntangent = \"frozen-yield\""})
+    EXPECT_NE(faults("[solve]\n" + key).find(": no longer a key. Leave it out"), std::string::npos) << key;
+}
+
 TEST(SolveOptions, contact_by_points_needs_a_level_grid_and_a_solver_without_assembly) {
   EXPECT_EQ(faults("[solve]\nground_contact = \"points\""),
             "[solve] ground_contact = \"points\" does not go with mapping = \"terrain-following\" (there the nodes lie "
@@ -143,16 +155,6 @@ TEST(SolveOptions, means_over_elements_need_implicit_steps_and_a_pressure_of_the
             "from the volume change alone). Take model = \"hencky\" or \"drucker-prager\"\n[solve.implicit] b_bar = "
             "true has no effect on explicit steps (only implicit steps average the volume change). Leave it out, or "
             "take integrator = \"newmark\" or \"quasi-static\"");
-}
-
-TEST(SolveOptions, the_exact_tangent_needs_a_solver_for_it) {
-  EXPECT_EQ(faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\ntangent=\"exact\""),
-            "[solve.implicit] tangent = \"exact\" does not go with this linear_solver (the exact tangent is not "
-            "symmetric). Take linear_solver = \"bicgstab\"");
-  EXPECT_EQ(faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\ntangent=\"exact\"\nb_bar=true\nlinear_solver="
-                   "\"bicgstab\""),
-            "[solve.implicit] tangent = \"exact\" does not go with b_bar (the mean volume change is in the symmetric "
-            "tangent alone). Take tangent = \"frozen-yield\"");
 }
 
 TEST(SolveOptions, gauges_have_names_of_their_own) {
@@ -265,8 +267,6 @@ TEST(SolveOptions, longer_steps_by_columns_are_for_what_holds_no_tension) {
 }
 
 TEST(SolveOptions, what_goes_together_is_taken) {
-  EXPECT_EQ(faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\ntangent=\"exact\"\nlinear_solver=\"bicgstab\""),
-            "");
   EXPECT_EQ(faults("[solve]\n[solve.implicit]\nlinear_solver=\"cholesky\"\n[[solve.obstacle]]\nname=\"a\""), "");
 }
 

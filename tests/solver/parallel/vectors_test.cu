@@ -21,9 +21,6 @@ class Vectors : public InEachPlace {
     NodeVector<Device> x(device), y(device), z(device);
     x.upload(a);
     y.upload(b);
-    double expected = 0;
-    for (std::size_t n = 0; n < a.size(); ++n) expected += a[n].x * b[n].x + a[n].y * b[n].y + a[n].z * b[n].z;
-    EXPECT_EQ(dot(x, y), expected);
     copy(y, z);
     axpby(3, x, -2, z);
     const auto sum = z.download();
@@ -33,11 +30,10 @@ class Vectors : public InEachPlace {
       EXPECT_EQ(sum[n].y, 3 * a[n].y - 2 * b[n].y);
       EXPECT_EQ(sum[n].z, 3 * a[n].z - 2 * b[n].z);
     }
-    EXPECT_EQ(dot(x, y), expected) << "x and y are read only";
   }
 };
 
-TEST_P(Vectors, are_copied_summed_and_multiplied_number_by_number) {
+TEST_P(Vectors, are_copied_and_summed_number_by_number) {
 #if TALUS_FOR_GPU
   if (GetParam() == On::gpu) return compute<GpuDevice>();
 #endif

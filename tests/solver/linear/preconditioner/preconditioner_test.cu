@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/linear/preconditioner/preconditioner_kind.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/linear_bench.hpp"
@@ -13,14 +12,10 @@ namespace talus::solver::testing {
 namespace {
 
 struct Named {
-  Preconditioner kind;
+  bool diagonal;
   const char* name;
 };
-constexpr Named kinds[] = {{Preconditioner::diagonal, "diagonal"},
-                           {Preconditioner::block, "block"},
-                           {Preconditioner::column, "column"},
-                           {Preconditioner::gauss_seidel, "gauss-seidel"},
-                           {Preconditioner::multigrid, "multigrid"}};
+constexpr Named kinds[] = {{true, "diagonal"}, {false, "block"}};
 
 class Preconditioners : public InEachPlace {
  protected:
@@ -30,28 +25,14 @@ class Preconditioners : public InEachPlace {
       LinearBench<Real, Device, Shape> bench(
           {kind_of<Shape>, Mapping::terrain_following, MaterialModel::hencky, b_bar, true});
       const auto expected = bench.by_cholesky();
-      for (const Named& n : kinds) EXPECT_LT(difference(bench.by_gradients(n.kind), expected), 1e-8) << n.name;
+      for (const Named& n : kinds) EXPECT_LT(difference(bench.by_gradients(n.diagonal), expected), 1e-8) << n.name;
     }
-  }
-
-  /// Where all columns but those a stencil apart are held, the columns left are the whole system.
-  template <class Real, class Device, class Shape>
-  static void solve_lone_columns() {
-    LinearBench<Real, Device, Shape> bench({kind_of<Shape>});
-    bench.hold_all_columns_but_one_in(Shape::width);
-    int iterations = 0;
-    for (const auto kind : {Preconditioner::column, Preconditioner::gauss_seidel}) {
-      bench.by_gradients(kind, &iterations);
-      EXPECT_LE(iterations, 2) << "one, and rounding";
-    }
-    bench.by_gradients(Preconditioner::block, &iterations);
-    EXPECT_GT(iterations, 5) << "the test shows nothing";
   }
 
   /// Iterations to a thousandth for a slab of four layers h / aspect high on 32 x 28 cells, in steps of so many
   /// horizontal CFL steps.
   template <class Real, class Device, class Shape>
-  static int iterations(Preconditioner kind, double over_cfl, double aspect) {
+  static int iterations(bool diagonal, double over_cfl, double aspect) {
     constexpr double h = 2;
     Domain d = ground(44, 40, h, h / aspect, [](double, double) { return 0.0; });
     fill(d, {10, 74, 10, 66, 0, 4 * h / aspect});
@@ -62,35 +43,20 @@ class Preconditioners : public InEachPlace {
     const double step = over_cfl * h / static_cast<double>(bench.materials.list[0].wave_speed);
     bench.inertia = 4 / (step * step);
     int count = 0;
-    bench.by_gradients(kind, &count, 1e-3);
+    bench.by_gradients(diagonal, &count, 1e-3);
     return count;
   }
 
   template <class Real, class Device, class Shape>
   static void count_in_thin_layers() {
-    // What columns leave is that neighbours share their upright stiffness: the Gram matrix of the functions along x and
-    // y, summed over 2 x 2 points. Over its diagonal its condition is 16 for hats and 51 for splines, however thin the
-    // layers; under a sweep of Gauss-Seidel 3 and 6. But at the rim of the material, where few points see the outer
-    // splines, it is 500 (hats: still 3), which is why splines do not end within 1.5 times.
     std::printf("  CG iterations at 5 horizontal CFL steps, %s functions; vertical: 5, 15, 50\n",
                 name_of(kind_of<Shape>));
-    int of_blocks = 0;
     for (const Named& n : kinds) {
       int count[3];
       const double aspects[3] = {1, 3, 10};
-      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Device, Shape>(n.kind, 5, aspects[a]);
+      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Device, Shape>(n.diagonal, 5, aspects[a]);
       std::printf("    %-12s %4d %4d %4d\n", n.name, count[0], count[1], count[2]);
-      if (n.kind == Preconditioner::gauss_seidel) {
-        EXPECT_LE(count[2], (Shape::spline ? 3 : 1.5) * count[0]);
-      } else if (n.kind == Preconditioner::multigrid) {
-        EXPECT_LE(count[2], 0.2 * of_blocks);
-      } else if (n.kind == Preconditioner::column) {
-        EXPECT_LE(count[2], (Shape::spline ? 3.5 : 2) * count[0]);
-        EXPECT_LE(count[2], 0.55 * of_blocks);
-      } else {
-        EXPECT_GT(count[2], 4 * count[0]) << "thin layers cost nothing: the test shows nothing";
-        of_blocks = count[2];
-      }
+      EXPECT_GT(count[2], 4 * count[0]) << "thin layers cost nothing: the test shows nothing";
     }
   }
 
@@ -101,13 +67,9 @@ class Preconditioners : public InEachPlace {
     for (const Named& n : kinds) {
       int count[3];
       const double steps[3] = {5, 15, 50};
-      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Device, Shape>(n.kind, steps[a], 1);
+      for (int a = 0; a < 3; ++a) count[a] = iterations<Real, Device, Shape>(n.diagonal, steps[a], 1);
       std::printf("    %-12s %4d %4d %4d\n", n.name, count[0], count[1], count[2]);
-      if (n.kind == Preconditioner::multigrid) {
-        EXPECT_LE(count[2], (Shape::spline ? 3.6 : 1.5) * count[0]);
-      } else {
-        EXPECT_GT(count[2], 4 * count[0]) << "long steps cost nothing: the test shows nothing";
-      }
+      EXPECT_GT(count[2], 4 * count[0]) << "long steps cost nothing: the test shows nothing";
     }
   }
 
@@ -138,7 +100,7 @@ class Preconditioners : public InEachPlace {
         bench.inertia = 4 / (step * step);
         bench.contrast(12, c.stiffness, c.density);
         int count = 0;
-        const auto solution = bench.by_gradients(n.kind, &count, 1e-8);
+        const auto solution = bench.by_gradients(n.diagonal, &count, 1e-8);
         std::printf(" %5d", count);
         EXPECT_LT(difference(solution, bench.by_cholesky()), 1e-6) << n.name;
       }
@@ -148,9 +110,8 @@ class Preconditioners : public InEachPlace {
 };
 
 TEST_P(Preconditioners, give_one_solution) { TALUS_RUN(give_one_solution); }
-TEST_P(Preconditioners, solve_columns_that_nothing_couples_at_once) { TALUS_RUN(solve_lone_columns); }
-TEST_P(Preconditioners, of_columns_see_less_of_thin_layers) { TALUS_RUN(count_in_thin_layers); }
-TEST_P(Preconditioners, of_grids_see_nothing_of_long_steps) { TALUS_RUN(count_in_long_steps); }
+TEST_P(Preconditioners, need_more_iterations_in_thin_layers) { TALUS_RUN(count_in_thin_layers); }
+TEST_P(Preconditioners, need_more_iterations_in_long_steps) { TALUS_RUN(count_in_long_steps); }
 
 TEST_P(Preconditioners, converge_in_a_body_of_two_stiffnesses) { TALUS_RUN(count_with_contrasts); }
 

@@ -33,7 +33,6 @@ Material<Real> grains(const MuOfI::Options& o) {
   m.bulk_modulus = static_cast<Real>(exact.bulk_modulus);
   m.wave_speed = static_cast<Real>(exact.wave_speed);
   m.template numbers_of<MuOfI>() = MuOfI::numbers<Real>(o, 1.0);
-  m.template numbers_of<MuOfI>().exact_tangent = true;
   return m;
 }
 

@@ -14,7 +14,6 @@ namespace {
 Material<double> mud(const HerschelBulkley::Options& o) {
   auto m = some_material<HerschelBulkley, MaterialLaws>();
   m.numbers_of<HerschelBulkley>() = HerschelBulkley::numbers<double>(o, 1.0);
-  m.numbers_of<HerschelBulkley>().exact_tangent = true;
   return m;
 }
 

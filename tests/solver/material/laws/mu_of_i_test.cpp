@@ -15,7 +15,6 @@ constexpr double pressed = 1e4;  // [Pa]
 Material<double> granular(const MuOfI::Options& o = {}) {
   auto m = some_material<MuOfI, MaterialLaws>();
   m.numbers_of<MuOfI>() = MuOfI::numbers<double>(o, 1.0);
-  m.numbers_of<MuOfI>().exact_tangent = true;
   return m;
 }
 
