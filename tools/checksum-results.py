@@ -63,7 +63,6 @@ VARIANTS = {
     "budget": ("energy_budget = true", "", {}),
     "deterministic": ("deterministic = true", "", {}),
     "cartesian-nodes": ('mapping = "cartesian"', "", {}),
-    "cartesian-points": ('mapping = "cartesian"\nground_contact = "points"', "", {}),
     "cohesion-dilatancy": (
         "",
         "[solve.material]\ncohesion_Pa = 500.0\ndilatancy_angle_deg = 5.0\n" "tension_cutoff_Pa = 100.0\n",
@@ -117,7 +116,6 @@ VARIANTS = {
     "newmark-weakening": ('integrator = "newmark"', '[solve.base]\nlaw = "velocity-weakening"\n', {}),
     "newmark-samosat": ('integrator = "newmark"', '[solve.base]\nlaw = "samosat"\n', {}),
     "newmark-musl-flip": ('integrator = "newmark"\nstress_update = "musl"\ntransfer = "flip"\ndamping = 0.05', "", {}),
-    "newmark-points": ('integrator = "newmark"\nmapping = "cartesian"\nground_contact = "points"', "", {}),
     "newmark-cholesky": ('integrator = "newmark"', '[solve.implicit]\nlinear_solver = "cholesky"\n', {}),
     "newmark-fixed-forcing": ('integrator = "newmark"', '[solve.implicit]\nforcing = "fixed"\n', {}),
     "newmark-b-bar": (

@@ -12,6 +12,7 @@ struct GoneKey {
 
 constexpr GoneKey gone_keys[] = {
     {"solve.flip_fraction", "Give transfer_time_s, the time over which velocity finer than the grid decays"},
+    {"solve.ground_contact", "Leave it out; mapping = \"terrain-following\" meets steep ground where it is"},
     {"solve.implicit.linear_solver=bicgstab", "Take linear_solver = \"pcg\""},
     {"solve.implicit.operator",
      "Leave it out; the product goes point by point, and preset = \"reference\" stores element matrices"},

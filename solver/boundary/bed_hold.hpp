@@ -18,7 +18,7 @@ namespace talus {
 /// base node is empty. What flies above has no part in it.
 template <class Real, class Nodes>
 TALUS_HD LyingMatter<Real> matter_on_bed(const GridView<Real>& grid, const Nodes& nodes, const ColumnNodes& at) {
-  const int bed = bed_layer(grid, at.column);
+  const int bed = grid.contact_layer(at.column);
   if (bed < at.begin()) return {};
   int last = bed;
   while (last < at.end() && nodes.mass(at.node(last)) > Real(0)) ++last;

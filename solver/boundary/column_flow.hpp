@@ -39,14 +39,6 @@ TALUS_HD bool lies_on_bed(Number rise, Number press, Number depth) {
   return rise <= Number(0) || rise * rise < press * depth;
 }
 
-/// The highest layer whose node can lie on the bed of a column.
-template <class Real>
-TALUS_HD int bed_layer(const GridView<Real>& grid, int column) {
-  if (grid.mapping == Mapping::cartesian && grid.ground == GroundContact::points)
-    return static_cast<int>(floor(grid.terrain[column] / grid.layer_height)) + 1;
-  return grid.contact_layer(column);
-}
-
 /// The mass of the column that is dx, dy columns from column (i, j), 0 where there is none [kg].
 template <class Real, class Number>
 TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int i, int j, int dx, int dy) {
@@ -229,7 +221,7 @@ struct MeasureColumns {
   TALUS_HD void operator()(int c) const {
     const ColumnNodes at = ColumnNodes::find(grid, active, c);
     if (!at.in_domain()) return;
-    const int column = at.column, bed = bed_layer(grid, column);
+    const int column = at.column, bed = grid.contact_layer(column);
     Number mass = 0;
     columns.rise[column] = Number(off_bed);
     for (int k = at.begin(); k < at.end(); ++k) {

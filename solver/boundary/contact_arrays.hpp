@@ -48,8 +48,8 @@ class ContactArrays {
     upload_vectors(impulse_, state.impulse, points.size());
   }
 
-  /// The contact points as kernels see them; those of the bed have the friction `ground`.
-  ContactView<Real> view(const BaseFriction<Real>& ground) {
+  /// The contact points as kernels see them.
+  ContactView<Real> view() {
     ContactView<Real> v{};
     for (std::size_t a = 0; a < 3; ++a) {
       v.places.cell[a] = cell_[a].data();
@@ -60,7 +60,6 @@ class ContactArrays {
     v.area = area_.data();
     v.body = body_.data();
     v.body_friction = body_friction_.data();
-    v.ground = ground;
     v.inverse_mass = inverse_mass_.data();
     v.force = force_.data();
     v.impulse = impulse_.data();

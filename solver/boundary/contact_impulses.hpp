@@ -93,7 +93,6 @@ struct SweepContacts {
   ContactView<Real> contacts;
   Nodes nodes;
   const Real* yielding;
-  double layer_mass;  ///< of a full layer over a square metre [kg/m2]
   const Clock* clock;
   double step;  ///< [s]; the clock's where it has one
   bool grips;   ///< with friction
@@ -106,7 +105,7 @@ struct SweepContacts {
     const double dt = clock ? clock->step_size : step;
     Vec3<Real> p{};
     if (contacts.inverse_mass[c] > Real(0)) {
-      p = push_back(c, static_cast<Real>(dt));
+      p = push_back(c);
       const Vec3<Real> before = impulse[c], change = p - before;
       contacts.template around<Shape>(grid, nodes, c,
                                       [&](int n, Real share) { talus::scatter_add(&given[n], change * share); });
@@ -120,20 +119,15 @@ struct SweepContacts {
 
  private:
   /// The impulse of the step at point c, for the velocity that the others leave it.
-  TALUS_HD Vec3<Real> push_back(int c, Real dt) const {
+  TALUS_HD Vec3<Real> push_back(int c) const {
     Vec3<Real> v{};
     Real yield = 0;
     contacts.template around<Shape>(grid, nodes, c, [&](int n, Real share) {
       v += nodes.velocity(n) * share;
       yield += share * yielding[n];
     });
-    const Vec3<Real> normal = contacts.normal[c];
-    Real coefficient = 0;
-    if (grips) {
-      const Real pressed = dot(impulse[c], normal) / (contacts.area[c] * contacts.filled(grid, c, layer_mass) * dt);
-      coefficient = contacts.friction(grid, c, {length(v - normal * dot(v, normal)), pressed, dt});
-    }
-    return ContactView<Real>::hold(impulse[c] - v * (Real(1) / yield), normal, coefficient);
+    return ContactView<Real>::hold(impulse[c] - v * (Real(1) / yield), contacts.normal[c],
+                                   grips ? contacts.friction(c) : Real(0));
   }
 };
 
@@ -182,7 +176,6 @@ class ContactImpulses {
   struct Pass {
     const Clock* clock;
     double step;
-    double layer_mass;  ///< of a full layer over a square metre [kg/m2]
     bool grips, remembers;
   };
   /// The method makes the sweeps of a pass over `node_count` nodes. How these answer to an impulse is the matter of
@@ -206,9 +199,8 @@ class ContactImpulses {
     if (pass.remembers) take();
     for (int s = 0; s < contact_sweeps; ++s) {
       const bool last = pass.remembers && s + 1 == contact_sweeps;
-      contact.each(SweepContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, yielding_.data(), pass.layer_mass,
-                                                     pass.clock, pass.step, pass.grips, last, impulse_.data(),
-                                                     given_.data()});
+      contact.each(SweepContacts<Real, Shape, Nodes>{grid, contact.view(), nodes, yielding_.data(), pass.clock,
+                                                     pass.step, pass.grips, last, impulse_.data(), given_.data()});
       take();
     }
   }

@@ -29,33 +29,6 @@ bool open_at(const GridShape& shape, const TerrainTables& terrain, double xi, do
   return i >= 0 && j >= 0 && i < shape.columns && j < shape.rows && terrain.open[shape.index(i, j)];
 }
 
-/// The function adds two points to a cell and direction, more where the ground is so steep that they would lie further
-/// apart than half a layer.
-void add_ground(const GridShape& shape, const TerrainTables& terrain, std::vector<Sample>& samples) {
-  constexpr int most = 8;
-  for (int j = 0; j < shape.rows; ++j) {
-    for (int i = 0; i < shape.columns; ++i) {
-      if (!open_at(shape, terrain, i, j)) continue;
-      const GroundPoint<double> middle = bicubic_ground(shape, terrain, i, j);
-      const double steep =
-          std::max(std::abs(middle.slope_x), std::abs(middle.slope_y)) * shape.spacing / shape.layer_height;
-      const int n = std::clamp(static_cast<int>(std::ceil(2 * steep)), 2, most);
-      for (int b = 0; b < n; ++b) {
-        for (int a = 0; a < n; ++a) {
-          const double xi = i - 0.5 + (a + 0.5) / n, eta = j - 0.5 + (b + 0.5) / n;
-          const GroundPoint<double> g = bicubic_ground(shape, terrain, xi, eta);
-          const double length = std::sqrt(1 + g.slope_x * g.slope_x + g.slope_y * g.slope_y);
-          const double side = shape.spacing / n;
-          samples.push_back({{xi, eta, g.height / shape.layer_height},
-                             {-g.slope_x / length, -g.slope_y / length, 1 / length},
-                             side * side * length,
-                             ContactPoints::ground});
-        }
-      }
-    }
-  }
-}
-
 /// The six ways a piece of surface can mainly look.
 int facing(const std::array<double, 3>& area) {
   std::size_t axis = 0;
@@ -132,7 +105,6 @@ ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, co
                                   const std::vector<Obstacle>& obstacles) {
   ContactPoints points;
   std::vector<Sample> samples;
-  if (shape.ground == GroundContact::points) add_ground(shape, terrain, samples);
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     points.notes.push_back(add_obstacle(map, shape, terrain, obstacles[o], static_cast<int>(o), samples));
     points.friction.push_back(obstacles[o].friction);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surfaces that the mass meets between the nodes of the grid: obstacles, and on a Cartesian grid the ground. They are
-// points with a normal and an area, finer than the nodes; contact_impulses.hpp and contact_forces.hpp act on them.
+// The surfaces of obstacles, which lie between the nodes of the grid. They are points with a normal and an area, finer
+// than the nodes; contact_impulses.hpp and contact_forces.hpp act on them.
 #pragma once
 
 #include <filesystem>
@@ -23,21 +23,19 @@ struct Obstacle {
 
 /// The points of the surfaces, on the host. They do not move and are sorted by the grid's blocks of columns.
 struct ContactPoints {
-  static constexpr int ground = -1;
   std::vector<int> cell[3];          ///< nearest node
   std::vector<double> offset[3];     ///< from it, in cells [-0.5, 0.5)
   std::vector<Vec3<double>> normal;  ///< outward, where the mass is
   std::vector<double> area;          ///< [m2]
-  std::vector<int> body;             ///< index of the obstacle, or `ground`
+  std::vector<int> body;             ///< index of the obstacle
   std::vector<double> friction;      ///< coefficient of every obstacle [-]
   std::vector<std::string> notes;    ///< a line on every obstacle
   /// The number of points.
   std::size_t size() const { return body.size(); }
 };
 
-/// This function makes the points of the obstacles' surfaces, at most half a cell apart along each axis, and of the
-/// ground where `shape` has it met by points. It throws DataError for a level set that cannot be read or lies
-/// wholly outside the ground.
+/// This function makes the points of the obstacles' surfaces, at most half a cell apart along each axis. It throws
+/// DataError for a level set that cannot be read or lies wholly outside the ground.
 ContactPoints make_contact_points(const MapGrid& map, const GridShape& shape, const TerrainTables& ground,
                                   const std::vector<Obstacle>& obstacles);
 

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact points as kernels see them: the mass before a point, the resistance to a slip there, and the law of contact.
+// Contact points as kernels see them: the mass before a point, its friction, and the law of contact.
 #pragma once
 
-#include "solver/boundary/base_friction.hpp"
 #include "solver/boundary/contact_points.hpp"
 #include "solver/state/grid_view.hpp"
 #include "solver/state/particles.hpp"
@@ -19,9 +18,8 @@ struct ContactView {
   const Real* area;  ///< [m2]
   const int* body;
   const Real* body_friction;  ///< coefficient of each obstacle
-  BaseFriction<Real> ground;
-  Real* inverse_mass;   ///< of the mass before it in this step [1/kg]; 0: there is none
-  Vec3<double>* force;  ///< see ContactState
+  Real* inverse_mass;         ///< of the mass before it in this step [1/kg]; 0: there is none
+  Vec3<double>* force;        ///< see ContactState
   Vec3<double>* impulse;
 
   /// The method calls f(node, share) for the nodes with any mass around point c, which the mass is before. Shares M_ic
@@ -43,8 +41,7 @@ struct ContactView {
   }
 
   /// The mass before point c by weight [kg], 0 where that falls off along the normal. A surface stops what comes from
-  /// the side it looks to, not what a wall thinner than a cell keeps on its other side, whose nodes are the same. The
-  /// ground has but one side.
+  /// the side it looks to, not what a wall thinner than a cell keeps on its other side, whose nodes are the same.
   template <class Shape, class Nodes>
   TALUS_HD Real mass_before(const GridView<Real>& grid, const Nodes& nodes, int c) const {
     const Stencil<Real, Shape> s(grid, places, c);
@@ -63,24 +60,14 @@ struct ContactView {
         }
       }
     }
-    return body[c] == ContactPoints::ground || rise * grid.spacing > Real(-0.5) * mass ? mass : Real(0);
+    return rise * grid.spacing > Real(-0.5) * mass ? mass : Real(0);
   }
 
-  /// The ratio of friction to normal force at contact point c: the obstacle's, or that of the bed there.
-  TALUS_HD Real friction(const GridView<Real>& grid, int c, const Slip<Real>& slip) const {
-    if (body[c] != ContactPoints::ground) return body_friction[body[c]];
-    if (ground.holds()) return Real(1e6);
-    return ground.base_coefficient(grid.column(places.cell[0][c], places.cell[1][c]), slip);
-  }
+  /// The ratio of friction to normal force at contact point c.
+  TALUS_HD Real friction(int c) const { return body_friction[body[c]]; }
 
-  /// The cohesion of what contact point c stands for [Pa].
-  TALUS_HD Real cohesion(const GridView<Real>& grid, int c) const {
-    if (body[c] != ContactPoints::ground) return Real(0);
-    return ground.at(grid.column(places.cell[0][c], places.cell[1][c])).cohesion;
-  }
-
-  /// The share to which the bed at point c is covered: a layer's worth of mass makes it a full one, of which half lies
-  /// within the weights of a point on a surface.
+  /// The share to which the surface at point c is covered: a layer's worth of mass makes it a full one, of which half
+  /// lies within the weights of a point on a surface.
   TALUS_HD Real filled(const GridView<Real>& grid, int c, double layer_mass) const {
     const Real share = Real(1) / (inverse_mass[c] * Real(0.5 * layer_mass) * grid.spacing * grid.spacing);
     return share < Real(1) ? share : Real(1);

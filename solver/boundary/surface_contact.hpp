@@ -35,12 +35,11 @@ struct ForgetForces {
 template <class Real, class Device, class Shape>
 class SurfaceContact {
  public:
-  /// The constructor takes the points of a grid of this shape, the friction of the ground among them, and what they
-  /// gave before; with `in_order` sums are the same on every run on a GPU too.
-  SurfaceContact(const Device& device, const ContactPoints& points, const BaseFriction<Real>& ground,
-                 const GridShape& shape, const ContactState& state, bool in_order)
+  /// The constructor takes the points of a grid of this shape, and what they gave before; with `in_order` sums are the
+  /// same on every run on a GPU too.
+  SurfaceContact(const Device& device, const ContactPoints& points, const GridShape& shape, const ContactState& state,
+                 bool in_order)
       : device_(device),
-        ground_(ground),
         bodies_(points.body),
         obstacles_(points.friction.size()),
         arrays_(device, points, state),
@@ -52,7 +51,7 @@ class SurfaceContact {
   int count() const { return nearby_.count(); }
 
   /// The contact points as kernels see them.
-  ContactView<Real> view() { return arrays_.view(ground_); }
+  ContactView<Real> view() { return arrays_.view(); }
 
   /// The method lists the contact points beside the mass, once the grid has been fitted to it.
   template <class Grid>
@@ -74,9 +73,7 @@ class SurfaceContact {
   std::vector<Vec3<double>> obstacle_impulses() const {
     std::vector<Vec3<double>> sums(obstacles_);
     const std::vector<Vec3<double>> impulses = arrays_.impulses();
-    for (std::size_t c = 0; c < impulses.size(); ++c) {
-      if (bodies_[c] != ContactPoints::ground) sums[static_cast<std::size_t>(bodies_[c])] += impulses[c] * -1.0;
-    }
+    for (std::size_t c = 0; c < impulses.size(); ++c) sums[static_cast<std::size_t>(bodies_[c])] += impulses[c] * -1.0;
     return sums;
   }
 
@@ -88,7 +85,6 @@ class SurfaceContact {
 
  private:
   Device device_;
-  BaseFriction<Real> ground_;
   std::vector<int> bodies_;
   std::size_t obstacles_;
   ContactArrays<Real, Device> arrays_;

@@ -345,7 +345,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     const PackedNodes<Real> nodes = step_nodes<content>().nodes;
     const auto run = [&](const auto& inertia) {
       surroundings_.impulses().run(surroundings_.contact(), grid_.view(), nodes, grid_.nodes(), inertia,
-                                   {clock_.data(), 0, this->layer_mass(), first, first});
+                                   {clock_.data(), 0, first, first});
     };
     if constexpr (content == NodeContent::force) {
       if (solves_columns_) {

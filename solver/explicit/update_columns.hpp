@@ -109,7 +109,7 @@ struct UpdateColumns {
     record_motion(maps, at.column, *clock, motion, density, grid.spacing);
     if (columns.mass) {
       columns.mass[at.column] = sums.mass;
-      const int bed = bed_layer(grid, at.column);
+      const int bed = grid.contact_layer(at.column);
       if (bed < at.first || bed >= at.last) columns.rise[at.column] = Real(off_bed);
     }
     if constexpr (counts) pressed[at.column] = static_cast<Real>(sums.losses.pressed);
@@ -122,7 +122,7 @@ struct UpdateColumns {
  private:
   /// Whether the node in layer k says of its column how fast it leaves the bed.
   TALUS_HD bool measures_rise(int column, int k) const {
-    return content != NodeContent::remapped && columns.mass && k == bed_layer(grid, column);
+    return content != NodeContent::remapped && columns.mass && k == grid.contact_layer(column);
   }
 
   TALUS_HD Vec3<Real> update(const Column& at, int k, int n, const Vec4<Real>& node,

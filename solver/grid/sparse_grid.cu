@@ -30,7 +30,6 @@ GridView<Real> SparseGrid<Real, Device>::view() const {
   v.homes_below = order_.by_lowest_node();
   v.walls = walls_;
   v.mapping = shape_.mapping;
-  v.ground = shape_.ground;
   v.slots = storage_.slots();
   terrain_.show(v);
   return v;

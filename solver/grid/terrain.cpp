@@ -109,14 +109,7 @@ TerrainTables make_terrain_tables(const GridShape& shape) {
   return tables;
 }
 
-GroundPoint<double> bicubic_ground(const GridShape& shape, const TerrainTables& tables, double xi, double eta) {
-  const double i = std::floor(xi), j = std::floor(eta);
-  return bicubic_ground(NodeTerrain<double>{tables.terrain.data(), shape.columns, shape.rows, shape.spacing},
-                        static_cast<int>(i), static_cast<int>(j), xi - i, eta - j);
-}
-
 double terrain_at(const GridShape& shape, const TerrainTables& tables, double xi, double eta) {
-  if (shape.ground == GroundContact::points) return bicubic_ground(shape, tables, xi, eta).height;
   const auto sample = [&](auto kind) {
     using Shape = decltype(kind);
     double wx[3], wy[3], unused[3];

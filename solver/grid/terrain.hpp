@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "solver/grid/bicubic.hpp"
 #include "solver/state/grid_view.hpp"
 
 namespace talus {
@@ -16,7 +15,6 @@ struct GridShape {
   int columns = 0, rows = 0;
   double spacing = 0, layer_height = 0;  ///< [m]
   Mapping mapping = Mapping::terrain_following;
-  GroundContact ground = GroundContact::nodes;
   bool quadratic = true;
   double lowest_weighed = 0;    ///< see GridView
   std::vector<double> terrain;  ///< elevations at the nodes [m], NaN outside the domain; [rows * columns]
@@ -38,11 +36,8 @@ struct TerrainTables {
 /// The terrain of a grid: elevations at the nodes above the datum, the coefficients b_i of (T1), and the slopes there.
 TerrainTables make_terrain_tables(const GridShape& shape);
 
-/// The bicubic ground on the host, at (xi, eta) in cells from node (0, 0).
-GroundPoint<double> bicubic_ground(const GridShape& shape, const TerrainTables& tables, double xi, double eta);
-
 /// The elevation of the terrain at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it
-/// (T1), or bicubic where it is met by points [m above datum].
+/// (T1) [m above datum].
 double terrain_at(const GridShape& shape, const TerrainTables& tables, double xi, double eta);
 
 }  // namespace talus

@@ -8,7 +8,6 @@
 #include "solver/boundary/walls.hpp"
 #include "solver/elements/displacement_gradient.hpp"
 #include "solver/elements/mean_dilation.hpp"
-#include "solver/grid/bicubic.hpp"
 #include "solver/implicit/node_arrays.hpp"
 #include "solver/material/tangent.hpp"
 #include "solver/state/clock.hpp"
@@ -141,7 +140,6 @@ struct AcceptStep {
       raise_flag(&clock->request, failed);
       return;
     }
-    if (grid.ground == GroundContact::points) keep_above_ground(grid, points, p);
     const int i = points.cell[0][p], j = points.cell[1][p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
       points.cell[0][p] = -1;

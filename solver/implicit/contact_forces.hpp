@@ -18,8 +18,7 @@ inline constexpr double contact_stiffness = 30;
 /// The numbers of a step at the contact points, in arrays over them.
 struct ContactNumbers {
   double* spring;       ///< stiffness, as far as the place is filled [N/m]
-  double* coefficient;  ///< of friction, at the speed the step begins with
-  double* traction;     ///< what holds slip besides friction [N]
+  double* coefficient;  ///< of friction
   double* limit;  ///< what holds slip, for the push found last: held while Newton goes on, so that the force has a
                   ///< potential [N]
   Sym3<double>* stiffness;  ///< minus the force's derivative by the displacement [N/m]
@@ -34,16 +33,13 @@ struct NodeMass {
   TALUS_HD Real mass(int n) const { return static_cast<Real>(data[n]); }
 };
 
-/// One thread: one contact point. It measures the mass before it, and friction for the velocity that the step begins
-/// with.
+/// One thread: one contact point. It measures the mass before it, and the limit of friction that the step begins with.
 template <class Real, class Shape>
 struct MeasureGrip {
   GridView<Real> grid;
   ContactView<Real> contacts;
   NodeArrays nodes;
-  double layer_mass;  ///< see SweepContacts
-  bool dynamic;
-  double step;  ///< [s]
+  double layer_mass;  ///< of a full layer over a square metre [kg/m2]
   ContactNumbers numbers;
   TALUS_HD void operator()(int c) const {
     const NodeMass<Real> masses{nodes.mass};
@@ -53,20 +49,12 @@ struct MeasureGrip {
       contacts.force[c] = {};
       return;
     }
-    Vec3<double> v{};
-    if (dynamic)
-      contacts.template around<Shape>(grid, masses, c,
-                                      [&](int n, Real share) { v += nodes.velocity[n] * static_cast<double>(share); });
     const Vec3<double> normal = widen(contacts.normal[c]);
     const double filled = static_cast<double>(contacts.filled(grid, c, layer_mass)),
                  area = static_cast<double>(contacts.area[c]);
-    const double pressed = dot(contacts.force[c], normal) / (area * filled);
-    const Slip<Real> slip{static_cast<Real>(length(v - normal * dot(v, normal))), static_cast<Real>(pressed),
-                          static_cast<Real>(step)};
     numbers.spring[c] = numbers.modulus * area * filled;
-    numbers.coefficient[c] = static_cast<double>(contacts.friction(grid, c, slip));
-    numbers.traction[c] = static_cast<double>(contacts.cohesion(grid, c)) * area * filled;
-    numbers.limit[c] = numbers.coefficient[c] * dot(contacts.force[c], normal) + numbers.traction[c];
+    numbers.coefficient[c] = static_cast<double>(contacts.friction(c));
+    numbers.limit[c] = numbers.coefficient[c] * dot(contacts.force[c], normal);
   }
 };
 
@@ -148,7 +136,7 @@ struct RenewLimits {
     const Vec3<double> u = contact_move<Real, Shape>(grid, contacts, nodes.mass, nodes.u, c);
     const Vec3<double> before = contact_force(contacts, numbers, c, u, nullptr);
     const double push = dot(before, widen(contacts.normal[c]));
-    numbers.limit[c] = push > 0 ? numbers.coefficient[c] * push + numbers.traction[c] : 0;
+    numbers.limit[c] = push > 0 ? numbers.coefficient[c] * push : 0;
     const Vec3<double> change = contact_force(contacts, numbers, c, u, &numbers.stiffness[c]) - before;
     if (dot(change, change) > 0) spread<Real, Shape>(grid, contacts, nodes.mass, c, change * -1.0, nodes.internal);
   }

@@ -56,21 +56,19 @@ struct NodeContactFields {
 template <class Device>
 struct ContactPointFields {
   explicit ContactPointFields(const Device& device)
-      : spring(device), coefficient(device), traction(device), limit(device), stiffness(device) {}
+      : spring(device), coefficient(device), limit(device), stiffness(device) {}
 
-  Buffer<double, Device> spring, coefficient, traction, limit;
+  Buffer<double, Device> spring, coefficient, limit;
   Buffer<Sym3<double>, Device> stiffness;
 
   /// The method sets the number of contact points; their stiffness begins at zero.
   void resize(std::size_t points) {
-    for (auto* b : {&spring, &coefficient, &traction, &limit}) b->resize(points);
+    for (auto* b : {&spring, &coefficient, &limit}) b->resize(points);
     stiffness.resize(points);
     stiffness.fill_zero();
   }
   /// The size of the buffers [bytes].
-  std::size_t bytes() const {
-    return spring.bytes() + coefficient.bytes() + traction.bytes() + limit.bytes() + stiffness.bytes();
-  }
+  std::size_t bytes() const { return spring.bytes() + coefficient.bytes() + limit.bytes() + stiffness.bytes(); }
 };
 
 /// The nodes of an implicit step before its beginning, as drag of the bed sees them: mass [kg], momentum [kg m/s], and
@@ -241,11 +239,10 @@ class ContactSet {
   void begin_points(double step, bool predicts) {
     points_.resize(static_cast<std::size_t>(parts_.surfaces.count()));
     each_point(MeasureGrip<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), parts_.cell.layer_mass,
-                                        parts_.controls.dynamic, step, numbers()});
+                                        numbers()});
     if (!parts_.controls.dynamic) return;
     parts_.impulses.run(parts_.surfaces, parts_.grid.view(), ArrivingNodes<Real>{nodes(), predicts ? step : 0},
-                        nodes_.count, NodeInertia<Device>(parts_.device),
-                        {nullptr, step, parts_.cell.layer_mass, true, false});
+                        nodes_.count, NodeInertia<Device>(parts_.device), {nullptr, step, true, false});
   }
   ContactNumbers numbers() {
     const Material<Real>& material = parts_.materials.list[0];
@@ -253,7 +250,6 @@ class ContactSet {
     const double modulus = static_cast<double>(material.density) * wave * wave;  // of uniaxial strain
     return {.spring = points_.spring.data(),
             .coefficient = points_.coefficient.data(),
-            .traction = points_.traction.data(),
             .limit = points_.limit.data(),
             .stiffness = points_.stiffness.data(),
             .modulus = contact_stiffness * modulus / std::min(parts_.cell.spacing, parts_.cell.layer_height)};

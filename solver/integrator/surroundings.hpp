@@ -30,7 +30,7 @@ class Surroundings {
         walls_(settings.walls),
         frame_{{scene.map.x(0), scene.map.y(0), datum},
                {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},
-        contact_(device, scene.contacts, bed_.view(), scene.grid, state, settings.deterministic),
+        contact_(device, scene.contacts, scene.grid, state, settings.deterministic),
         impulses_(device) {}
 
   /// The bed's friction as kernels see it.

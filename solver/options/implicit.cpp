@@ -62,10 +62,10 @@ void ImplicitOptions::describe_newton(recipe::Visitor& v) {
 void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& all) {
   recipe::choice(v, "linear_solver", linear_solver, {{"pcg", LinearSolver::pcg}, {"cholesky", LinearSolver::cholesky}},
                  "preconditioned conjugate gradients without an assembled matrix, or sparse Cholesky factorisation");
-  v.needs(
-      linear_solver == LinearSolver::pcg || !abilities_of(all.asked_integrator()).solve_systems || !all.meets_points(),
-      {all.contact_words() + " does not go with [solve.implicit] linear_solver = \"cholesky\"",
-       "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
+  v.needs(linear_solver == LinearSolver::pcg || !abilities_of(all.asked_integrator()).solve_systems ||
+              all.obstacles.empty(),
+          {"[[solve.obstacle]] does not go with [solve.implicit] linear_solver = \"cholesky\"",
+           "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
   v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true}, "pcg: residual over right-hand side");
   recipe::choice(v, "forcing", forcing, {{"eisenstat-walker", Forcing::eisenstat_walker}, {"fixed", Forcing::fixed}},
                  "eisenstat-walker: no more exact than Newton's iteration can use, linear_tolerance at the finest; "

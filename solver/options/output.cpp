@@ -60,8 +60,8 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
           {"[solve] energy_budget = true does not go with this integrator or stress_update",
            "losses are counted in explicit and column-implicit steps with stress_update = \"usl\"",
            "Leave it out, or take integrator = \"explicit\""});
-  v.needs(!energy_budget || !all.meets_points(),
-          {all.contact_words() + " does not go with energy_budget = true", "what is lost between nodes is not counted",
+  v.needs(!energy_budget || all.obstacles.empty(),
+          {"[[solve.obstacle]] does not go with energy_budget = true", "what is lost between nodes is not counted",
            "Leave energy_budget out"});
   v.flag("deterministic", deterministic,
          "explicit and column-implicit steps: the same bits on every run on a GPU too, as on the CPU always (slower)");

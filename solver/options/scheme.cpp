@@ -10,12 +10,6 @@ void SchemeOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "mapping", mapping,
                  {{"terrain-following", Mapping::terrain_following}, {"cartesian", Mapping::cartesian}},
                  "background grid: layers follow the ground, or lie level");
-  recipe::choice(v, "ground_contact", ground_contact,
-                 {{"nodes", GroundContact::nodes}, {"points", GroundContact::points}},
-                 "Cartesian grid: the ground met by the nodes at or below it, or by points between the nodes");
-  v.needs(ground_contact == GroundContact::nodes || mapping == Mapping::cartesian,
-          {"[solve] ground_contact = \"points\" does not go with mapping = \"terrain-following\"",
-           "there the nodes lie on the ground, and meet it exactly", "Leave it out, or take mapping = \"cartesian\""});
   recipe::choice(v, "shape", shape,
                  {{"quadratic", ShapeKind::quadratic}, {"gimp", ShapeKind::gimp}, {"linear", ShapeKind::linear}},
                  "functions of the grid: B-splines, hats averaged over the box of each point, or hats");

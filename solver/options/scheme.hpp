@@ -28,7 +28,6 @@ inline constexpr double default_cfl = 0.5;
 struct SchemeOptions {
   Precision precision = Precision::double_;
   Mapping mapping = Mapping::terrain_following;
-  GroundContact ground_contact = GroundContact::nodes;
   ShapeKind shape = ShapeKind::quadratic;
   Transfer transfer = Transfer::apic;
   std::optional<double> transfer_time;  ///< [s]; none: transfer_time_of()

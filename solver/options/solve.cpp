@@ -23,10 +23,10 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
           {key + "integrator = \"newmark\", \"quasi-static\" or preset = \"reference\"",
            "Newton's iterations free a base node whose reaction would pull",
            "Take integrator = \"explicit\", or separation = \"free\""});
-  v.needs(is_free || o.mapping == Mapping::terrain_following,
-          {key + "mapping = \"cartesian\"",
-           "its nodes and contact points lie up to a layer beside the ground, and would hold what passes by",
-           "Take mapping = \"terrain-following\", or separation = \"free\""});
+  v.needs(
+      is_free || o.mapping == Mapping::terrain_following,
+      {key + "mapping = \"cartesian\"", "its nodes lie up to a layer beside the ground, and would hold what passes by",
+       "Take mapping = \"terrain-following\", or separation = \"free\""});
 }
 
 /// This function declares what column-implicit steps need, and what needs them.
@@ -96,19 +96,11 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "shaking", shaking, "the ground shakes: an accelerogram as body force", *this);
   MassOptions::describe(v);
   recipe::table(v, "base", base, "the bed under it");
-  v.needs(ground_contact == GroundContact::nodes || !base.asks_column(),
-          {"[solve] ground_contact = \"points\" with [solve.base] law = \"" + base.law_name() + "\"",
-           "the law's friction follows from whole columns, which contact points know nothing of",
-           "Take ground_contact = \"nodes\", or another law"});
   need_separation(v, *this);
   need_columns(v, *this);
   need_accuracy(v, *this);
   need_preset(v, *this);
   v.renamed("transfer_time", "transfer_time_s", [this](const std::string& steps) { return seconds_of(steps, *this); });
-}
-
-std::string SolveOptions::contact_words() const {
-  return obstacles.empty() ? "[solve] ground_contact = \"points\"" : "[[solve.obstacle]]";
 }
 
 SolveOptions with_preset(SolveOptions o) {

@@ -32,12 +32,6 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   ShakingOptions shaking;
   BaseOptions base;
 
-  /// Whether the mass meets anything between nodes.
-  bool meets_points() const { return !obstacles.empty() || ground_contact == GroundContact::points; }
-
-  /// The keys that make it so, for messages.
-  std::string contact_words() const;
-
   /// The integrator that the recipe asks for, by its name or by a preset.
   Integrator asked_integrator() const {
     const bool dynamic = preset == Preset::reference && integrator != Integrator::quasi_static;

@@ -66,7 +66,6 @@ std::vector<std::string> features(const Plan& plan) {
   if (o.stress_update == StressUpdate::modified) add("stress", "from velocities mapped back (musl)");
   if (abilities_of(o.integrator).solve_systems && o.implicit.b_bar) add("volume", "means over cells (B-bar)");
   if (!o.walls.empty()) add("walls", fmt::format("{}", o.walls.size()));
-  if (o.ground_contact == GroundContact::points) add("ground", "met by points between the nodes");
   for (const ObstacleOptions& obstacle : o.obstacles)
     add("obstacle", fmt::format("{}, {:g} deg", obstacle.name, obstacle.friction_angle));
   for (const GaugeOptions& gauge : o.gauges)

@@ -162,7 +162,6 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
   shape.spacing = domain.grid.cell;
   shape.layer_height = domain.layer_height;
   shape.mapping = options.mapping;
-  shape.ground = options.ground_contact;
   shape.quadratic = options.shape == ShapeKind::quadratic;
   shape.lowest_weighed = lowest_weighed(options);
   shape.terrain = domain.terrain.values;

@@ -26,9 +26,6 @@ inline constexpr int blocks_across(int columns) { return (columns + block_side -
 /// The vertical coordinate of the grid: above the terrain, or above the datum.
 enum class Mapping { terrain_following, cartesian };
 
-/// The things that meet the ground of a Cartesian grid: the nodes at or below it, or points between the nodes.
-enum class GroundContact { nodes, points };
-
 /// The place in storage of the nodes of a block of columns.
 struct BlockSlot {
   int offset = -1;  ///< first node; -1: no storage
@@ -82,7 +79,6 @@ struct GridView {
       false;  // home is the cell of the lowest of its nodes, its own or the one below, not of the nearest
   WallNodes walls;
   Mapping mapping = Mapping::terrain_following;
-  GroundContact ground = GroundContact::nodes;
   const BlockSlot* slots = nullptr;  ///< [blocks in y * blocks in x]
   const Real* terrain = nullptr;     ///< spline coefficients of the ground at the nodes, from `datum` [m]
   const Real* slope_x = nullptr;     ///< slope of the ground at the nodes [-]
@@ -94,10 +90,10 @@ struct GridView {
   /// The place in storage of the block that column (i, j) belongs to.
   TALUS_HD const BlockSlot& slot(int i, int j) const { return slots[(j >> 2) * block_columns_x + (i >> 2)]; }
   /// The highest layer whose node touches the ground: the base layer, or on a Cartesian grid the last one not above the
-  /// terrain; -1 where points do.
+  /// terrain.
   TALUS_HD int contact_layer(int column) const {
     if (mapping == Mapping::terrain_following) return 0;
-    return ground == GroundContact::points ? -1 : static_cast<int>(floor(terrain[column] / layer_height + Real(1e-4)));
+    return static_cast<int>(floor(terrain[column] / layer_height + Real(1e-4)));
   }
   /// The place in storage of the column's node in layer k (k >= 0, inside the slot's range).
   TALUS_HD static int node(const BlockSlot& s, int i, int j, int k) {

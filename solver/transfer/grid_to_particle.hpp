@@ -3,7 +3,6 @@
 // Grid to particle (G2P): velocity, its gradient, the move and the new stress of the points.
 #pragma once
 
-#include "solver/grid/bicubic.hpp"
 #include "solver/material/material.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/transfer/company.hpp"
@@ -203,7 +202,6 @@ struct GridToParticle {
       raise_flag(&clock->request, failed);
       return;
     }
-    if (grid.ground == GroundContact::points) keep_above_ground(grid, points, p);
     const int i = points.cell[0][p], j = points.cell[1][p], k = points.cell[2][p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
       points.cell[0][p] = -1;

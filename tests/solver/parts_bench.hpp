@@ -52,7 +52,7 @@ struct PartsBench {
         materials(settings.common.materials.in<double>()),
         points(device, needs(settings.common)),
         grid(device, scene.grid, {.columns = 0, .layers = 0}),
-        surfaces(device, scene.contacts, settings.common.bed, scene.grid, {}, false),
+        surfaces(device, scene.contacts, scene.grid, {}, false),
         impulses(device) {
     points.upload(scene.points);
     grid.fit(points, 0);

@@ -44,7 +44,7 @@ SolverSettings static_settings(const SolveOptions& options, const Scene& scene, 
   s.implicit.newton.iterations = std::max(s.implicit.newton.iterations, most_iterations);
   s.implicit.newton.tolerance = balanced;
   s.implicit.newton.patience = patience_at_rest;
-  if (s.implicit.linear.solver == LinearSolver::pcg && !options.meets_points() && narrow(scene.points))
+  if (s.implicit.linear.solver == LinearSolver::pcg && options.obstacles.empty() && narrow(scene.points))
     s.implicit.linear.solver = LinearSolver::cholesky;
   return s;
 }

@@ -8,7 +8,7 @@
 namespace talus::solver::testing {
 namespace {
 
-/// Two points: one of obstacle 0, one of the ground.
+/// Two points, one of each obstacle.
 ContactPoints two_points() {
   ContactPoints points;
   for (int a = 0; a < 3; ++a) {
@@ -17,16 +17,15 @@ ContactPoints two_points() {
   }
   points.normal = {{0.6, 0, 0.8}, {0, 0, 1}};
   points.area = {0.3, 0.7};
-  points.body = {0, ContactPoints::ground};
-  points.friction = {0.9};
+  points.body = {0, 1};
+  points.friction = {0.9, 0.2};
   return points;
 }
 
 TEST(ContactArrays, show_kernels_every_number_of_the_points) {
   const ContactPoints points = two_points();
   ContactArrays<float, CpuDevice> arrays(CpuDevice::make(), points, {});
-  BaseFriction<float> bed{FrictionLaw::coulomb, {{0.5F}}};
-  const ContactView<float> view = arrays.view(bed);
+  const ContactView<float> view = arrays.view();
   for (std::size_t c = 0; c < 2; ++c) {
     for (std::size_t a = 0; a < 3; ++a) {
       EXPECT_EQ(view.places.cell[a][c], points.cell[a][c]);
@@ -42,14 +41,13 @@ TEST(ContactArrays, show_kernels_every_number_of_the_points) {
     EXPECT_EQ(length(view.impulse[c]), 0);
   }
   EXPECT_EQ(view.body_friction[0], 0.9F);
-  EXPECT_EQ(view.ground.law, FrictionLaw::coulomb);
-  EXPECT_EQ(view.ground.uniform.numbers[0], 0.5F);
+  EXPECT_EQ(view.friction(1), 0.2F);
 }
 
 TEST(ContactArrays, go_on_from_the_state_of_a_checkpoint) {
   const ContactState before{.force = {1, 2, 3, 4, 5, 6}, .impulse = {7, 8, 9, 10, 11, 12}};
   ContactArrays<double, CpuDevice> arrays(CpuDevice::make(), two_points(), before);
-  const ContactView<double> view = arrays.view({});
+  const ContactView<double> view = arrays.view();
   EXPECT_EQ(view.force[1].y, 5);
   EXPECT_EQ(view.impulse[0].z, 9);
   view.force[0] = {-1, 0, 0};

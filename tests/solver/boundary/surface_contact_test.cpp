@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact between the nodes: obstacles given as level sets, and the ground of a Cartesian grid met by points.
+// Contact between the nodes: obstacles given as level sets.
 #include <algorithm>
 #include <filesystem>
-#include <numbers>
 
 #include "common/domain/level_set.hpp"
 #include "solver/integrator/scene.hpp"
@@ -17,7 +16,7 @@
 namespace talus::solver::testing {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, g = 9.81;
+constexpr double g = 9.81;
 
 /// An upright box as a level set, in a file of its own.
 ObstacleOptions box_obstacle(const std::string& name, const Box& b, double voxel) {
@@ -47,71 +46,6 @@ class SurfaceContactTest : public InEachPlace {};
 constexpr Integrator each_of_them[] = {Integrator::explicit_, Integrator::column_implicit, Integrator::newmark};
 const char* name_of(Integrator i) {
   return i == Integrator::newmark ? "newmark" : i == Integrator::column_implicit ? "column-implicit" : "explicit";
-}
-
-TEST_P(SurfaceContactTest, block_slides_on_ground_between_the_nodes) {  // validation.md B1 on a Cartesian grid
-  struct Incline {
-    double angle, direction, friction;
-    int layers;
-  };
-  for (const Integrator integrator : each_of_them) {
-    for (const Incline c :
-         {Incline{30, 0, 20, 4}, Incline{30, 37, 20, 4}, Incline{45, 60, 25, 2}, Incline{20, 200, 5, 1}}) {
-      if (integrator == Integrator::newmark && c.layers == 4) continue;  // minutes
-      // Columns of many layers, whose height does not bound the steps.
-      const double layer = integrator == Integrator::column_implicit && c.layers < 4 ? 0.25 : 1;
-      const double down_x = std::cos(c.direction * degree), down_y = std::sin(c.direction * degree),
-                   slope = std::tan(c.angle * degree);
-      Domain d =
-          ground(60, 60, 1.0, layer, [&](double x, double y) { return 100 - slope * (x * down_x + y * down_y); });
-      const double x0 = std::floor(30 - 14 * down_x - 3), y0 = std::floor(30 - 14 * down_y - 3);
-      fill(d, {x0, x0 + 6, y0, y0 + 6, 0, c.layers * 1.0});
-      SolveOptions o = rigid(integrator);
-      o.mapping = Mapping::cartesian;
-      o.ground_contact = GroundContact::points;
-      o.base.friction_angle = c.friction;
-      const Scene scene = make_scene(d, o);
-      const auto solver = make_solver(scene, o, GetParam());
-      const Centre start = centre(*solver, scene);
-      constexpr double time = 2;
-      run_to(*solver, time);
-      const Centre end = centre(*solver, scene);
-      const double expected =
-          0.5 * g * (std::sin(c.angle * degree) - std::tan(c.friction * degree) * std::cos(c.angle * degree)) * time *
-          time;
-      const double way = std::hypot(end.x - start.x, end.y - start.y), drop = start.z - end.z;
-      // validation.md B1: 1 % at four cells, 3 % at one. The body may rest a tenth of a cell higher or lower than it
-      // was put.
-      const double tolerance = c.layers >= 4 ? 0.01 : c.layers >= 2 ? 0.02 : 0.03;
-      const double error = way / (expected * std::cos(c.angle * degree)) - 1,
-                   sunk = (drop - way * slope) * std::cos(c.angle * degree);
-      std::printf("  %s, %g deg towards %g, bed %g deg, %d cells: error %.3f %%, sunk %.3f m\n", name_of(integrator),
-                  c.angle, c.direction, c.friction, c.layers, 100 * error, sunk);
-      EXPECT_LT(std::abs(error), tolerance);
-      EXPECT_LT(std::abs(sunk), 0.1);
-    }
-  }
-}
-
-TEST_P(SurfaceContactTest, rests_on_ground_between_the_nodes_below_its_friction_angle) {
-  const double slope = std::tan(25 * degree);
-  Domain d = ground(40, 40, 1.0, 1.0, [&](double x, double y) { return 100 - slope * (0.8 * x + 0.6 * y); });
-  fill(d, {16, 22, 16, 22, 0, 2});
-  for (const Integrator integrator : each_of_them) {
-    SolveOptions o = rigid(integrator);
-    o.mapping = Mapping::cartesian;
-    o.ground_contact = GroundContact::points;
-    o.base.friction_angle = 30;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    run_to(*solver, 1);  // the jolt of sudden gravity
-    const Centre start = centre(*solver, scene);
-    run_to(*solver, 6);
-    const Centre end = centre(*solver, scene);
-    const double crept = std::hypot(end.x - start.x, end.y - start.y);
-    std::printf("  %s: crept %.2e m in 5 s\n", name_of(integrator), crept);
-    EXPECT_LT(crept, 6 * 1e-4 / 12);  // as block_on_incline_test.cpp
-  }
 }
 
 TEST_P(SurfaceContactTest, wall_takes_the_momentum_of_what_it_stops) {

@@ -35,7 +35,6 @@ const std::vector<Asked> everything_asked{
     {"averaged_functions", "", {{"solve.shape", "gimp"}}},
     {"hats", "", {{"solve.shape", "linear"}}},
     {"level_layers", "mapping = \"cartesian\"\n", {}},
-    {"ground_between_nodes", "mapping = \"cartesian\"\nground_contact = \"points\"\n", {}},
     {"energy_budget", "energy_budget = true\n", {}},
     {"obstacle", "[[solve.obstacle]]\nname = \"wall\"\nlevel_set = \"wall.vdb\"\n", {}},
     {"wall", "[[solve.wall]]\naxis = \"x\"\nposition_m = 14.0\n", {}},

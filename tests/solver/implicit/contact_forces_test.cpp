@@ -14,19 +14,15 @@ namespace {
 /// A contact point on level ground that pressed with 10 N in the last step.
 struct OneContact {
   Vec3<double> normal{0, 0, 1}, before{0, 0, 10};
-  double spring = 1000, coefficient = 0.5, traction = 0, limit = 5;
+  double spring = 1000, coefficient = 0.5, limit = 5;
   Sym3<double> stiffness;
 
   Vec3<double> force(const Vec3<double>& u, Sym3<double>* k = nullptr) {
     ContactView<double> view{};
     view.normal = &normal;
     view.force = &before;
-    const ContactNumbers numbers{.spring = &spring,
-                                 .coefficient = &coefficient,
-                                 .traction = &traction,
-                                 .limit = &limit,
-                                 .stiffness = &stiffness,
-                                 .modulus = 0};
+    const ContactNumbers numbers{
+        .spring = &spring, .coefficient = &coefficient, .limit = &limit, .stiffness = &stiffness, .modulus = 0};
     return contact_force(view, numbers, 0, u, k);
   }
 };

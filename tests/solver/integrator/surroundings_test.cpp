@@ -10,19 +10,28 @@
 namespace talus::solver::testing {
 namespace {
 
-/// A slope of 1 in 2, met between the nodes of a Cartesian grid whose datum is 4 m.
+/// A slope of 1 in 2 on a Cartesian grid whose datum is 4 m, without contact points or with some of an obstacle.
 struct Slope {
   Scene scene;
   IntegratorSettings settings;
 
-  explicit Slope(GroundContact contact) {
+  explicit Slope(int contacts) {
     Domain d = ground(12, 12, 1.0, 1.0, [](double x, double) { return 9.75 - 0.5 * x; });
     fill(d, {4, 6, 4, 6, 0, 1});
     SolveOptions o;
     o.mapping = Mapping::cartesian;
-    o.ground_contact = contact;
     o.base.friction_angle = 45;
     scene = make_scene(d, o);
+    for (int c = 0; c < contacts; ++c) {
+      for (int a = 0; a < 3; ++a) {
+        scene.contacts.cell[a].push_back(4 + c);
+        scene.contacts.offset[a].push_back(0.1);
+      }
+      scene.contacts.normal.push_back({0, 0, 1});
+      scene.contacts.area.push_back(0.25);
+      scene.contacts.body.push_back(0);
+    }
+    if (contacts > 0) scene.contacts.friction = {0.4};
     settings = make_settings(o, scene.grid).common;
     settings.walls = {{.axis = 0, .position = 7.5, .from = 1, .to = 2}, {.axis = 2, .position = 6, .from = 0, .to = 9}};
   }
@@ -32,7 +41,7 @@ struct Slope {
 };
 
 TEST(Surroundings, have_the_walls_of_a_time_in_cells_from_the_first_node_and_the_datum) {
-  const Slope slope(GroundContact::nodes);
+  const Slope slope(0);
   const auto surroundings = slope.make();
   const Walls<double> early = surroundings.walls<double>(0.5), later = surroundings.walls<double>(1.5);
   ASSERT_EQ(early.count, 1);
@@ -41,28 +50,28 @@ TEST(Surroundings, have_the_walls_of_a_time_in_cells_from_the_first_node_and_the
   EXPECT_EQ(later.list[0].position, 7);  // nodes stand half a cell from the map's edge
 }
 
-TEST(Surroundings, have_contact_points_where_the_ground_lies_between_the_nodes) {
-  const Slope by_nodes(GroundContact::nodes), by_points(GroundContact::points);
-  auto none = by_nodes.make();
+TEST(Surroundings, have_contact_points_where_there_are_obstacles) {
+  const Slope bare(0), with_obstacle(3);
+  auto none = bare.make();
   EXPECT_FALSE(none.contact().on());
   EXPECT_EQ(none.contact_bytes(), 0u);
-  auto some = by_points.make();
+  auto some = with_obstacle.make();
   ASSERT_TRUE(some.contact().on());
-  EXPECT_EQ(some.contact().count(), static_cast<int>(by_points.scene.contacts.size()));
+  EXPECT_EQ(some.contact().count(), 3);
   EXPECT_GT(some.contact_bytes(), 0u);
-  EXPECT_TRUE(some.contact().obstacle_impulses().empty()) << "the ground is no obstacle";
+  EXPECT_EQ(some.contact().obstacle_impulses().size(), 1u);
 }
 
-TEST(Surroundings, give_the_bed_s_friction_to_nodes_and_contact_points_alike) {
-  const Slope slope(GroundContact::points);
+TEST(Surroundings, have_the_friction_of_bed_and_obstacles) {
+  const Slope slope(2);
   auto surroundings = slope.make();
   EXPECT_NEAR(surroundings.bed().uniform.numbers[0], 1, 1e-15);  // tan 45 deg
-  EXPECT_EQ(surroundings.contact().view().ground.uniform.numbers[0], surroundings.bed().uniform.numbers[0]);
+  EXPECT_EQ(surroundings.contact().view().friction(1), 0.4);
   EXPECT_EQ(surroundings.bed_bytes(), 0u) << "the bed is the same everywhere";
 }
 
 TEST(Surroundings, go_on_from_what_contact_points_gave_before) {
-  const Slope slope(GroundContact::points);
+  const Slope slope(5);
   ContactState state;
   for (std::size_t c = 0; c < slope.scene.contacts.size(); ++c) {
     for (int a = 0; a < 3; ++a) state.force.push_back(static_cast<double>(3 * c) + a);

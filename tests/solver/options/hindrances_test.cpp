@@ -18,8 +18,7 @@ TEST(Hindrances, none_stand_in_the_way_of_a_plain_recipe) {
 
 TEST(Hindrances, of_columns_are_walls_above) {
   SolveOptions contact;
-  contact.mapping = Mapping::cartesian;
-  contact.ground_contact = GroundContact::points;
+  contact.obstacles.emplace_back();
   EXPECT_FALSE(beyond_columns(contact));
   SolveOptions floor;
   floor.walls.push_back({.axis = Axis::z, .material_is = Side::above});

@@ -54,9 +54,6 @@ TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) 
             "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
             "\"explicit\"");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"auto\""), "");
-  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nground_contact = \"points\"\nmapping=\"cartesian\""),
-            "[solve] ground_contact = \"points\" does not go with energy_budget = true (what is lost between nodes is "
-            "not counted). Leave energy_budget out");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\n[[solve.obstacle]]\nname=\"a\""),
             "[[solve.obstacle]] does not go with energy_budget = true (what is lost between nodes is not counted). "
             "Leave energy_budget out");
@@ -69,23 +66,16 @@ TEST(SolveOptions, keys_of_deleted_solvers_are_refused_with_advice) {
             std::string::npos);
   EXPECT_NE(faults("[solve.implicit]\nlinear_solver = \"bicgstab\"").find("(no longer a choice). Take"),
             std::string::npos);
-  for (const std::string key :
-       {"[solve.implicit]\noperator = \"points\"", "[solve.implicit]\ntangent = \"frozen-yield\""})
+  for (const std::string key : {"ground_contact = \"nodes\"", "[solve.implicit]\noperator = \"points\"",
+                                "[solve.implicit]\ntangent = \"frozen-yield\""})
     EXPECT_NE(faults("[solve]\n" + key).find(": no longer a key. Leave it out"), std::string::npos) << key;
 }
 
-TEST(SolveOptions, contact_by_points_needs_a_level_grid_and_a_solver_without_assembly) {
-  EXPECT_EQ(faults("[solve]\nground_contact = \"points\""),
-            "[solve] ground_contact = \"points\" does not go with mapping = \"terrain-following\" (there the nodes lie "
-            "on the ground, and meet it exactly). Leave it out, or take mapping = \"cartesian\"");
+TEST(SolveOptions, obstacles_need_a_solver_without_assembly) {
   EXPECT_EQ(faults("[solve]\nintegrator = "
                    "\"quasi-static\"\n[solve.implicit]\nlinear_solver=\"cholesky\"\n[[solve.obstacle]]\nname=\"a\""),
             "[[solve.obstacle]] does not go with [solve.implicit] linear_solver = \"cholesky\" (contact between nodes "
             "is not in the assembled matrix). Take linear_solver = \"pcg\"");
-  EXPECT_EQ(faults("[solve]\nintegrator = \"auto\"\nground_contact = "
-                   "\"points\"\nmapping=\"cartesian\"\n[solve.implicit]\nlinear_solver=\"cholesky\""),
-            "[solve] ground_contact = \"points\" does not go with [solve.implicit] linear_solver = \"cholesky\" "
-            "(contact between nodes is not in the assembled matrix). Take linear_solver = \"pcg\"");
 }
 
 TEST(SolveOptions, holding_the_mass_on_its_bed_needs_explicit_steps_on_a_grid_that_follows_it) {
@@ -96,13 +86,10 @@ TEST(SolveOptions, holding_the_mass_on_its_bed_needs_explicit_steps_on_a_grid_th
               "\"reference\" (Newton's iterations free a base node whose reaction would pull). Take integrator = "
               "\"explicit\", or separation = \"free\"");
   }
-  for (const std::string contact : {"", "ground_contact = \"points\"\n"}) {
-    EXPECT_EQ(
-        faults("[solve]\nmapping = \"cartesian\"\n" + contact + "[solve.base]\nseparation = \"thin\""),
-        "[solve.base] separation = \"thin\" with mapping = \"cartesian\" (its nodes and contact points lie up to a "
-        "layer beside the ground, and would hold what passes by). Take mapping = \"terrain-following\", or "
-        "separation = \"free\"");
-  }
+  EXPECT_EQ(
+      faults("[solve]\nmapping = \"cartesian\"\n[solve.base]\nseparation = \"thin\""),
+      "[solve.base] separation = \"thin\" with mapping = \"cartesian\" (its nodes lie up to a layer beside the ground, "
+      "and would hold what passes by). Take mapping = \"terrain-following\", or separation = \"free\"");
   EXPECT_EQ(faults("[solve]\nmapping = \"cartesian\"\nintegrator = \"newmark\"\n[solve.base]\nseparation = \"free\""),
             "");
   EXPECT_EQ(faults("[solve.base]\nseparation = \"none\"\nseparation_depth_m = 2.0"),

@@ -51,8 +51,6 @@ TEST(grid_view, contact_layer_is_the_base_or_the_last_one_not_above_the_terrain)
   EXPECT_EQ(grid.contact_layer(0), 0);
   grid.mapping = Mapping::cartesian;
   EXPECT_EQ(grid.contact_layer(0), 2);
-  grid.ground = GroundContact::points;
-  EXPECT_EQ(grid.contact_layer(0), -1);
 }
 
 }  // namespace

@@ -155,17 +155,5 @@ TEST(Voellmy, refuses_a_cohesion_that_would_push) {
   EXPECT_EQ(faults(50, FrictionLaw::coulomb), 0u);
 }
 
-TEST(SolveOptions, refuse_a_law_of_columns_with_contact_points) {
-  solver::SolveOptions o;
-  o.mapping = Mapping::cartesian;
-  o.ground_contact = GroundContact::points;
-  for (const auto& [law, count] : {std::pair{FrictionLaw::voellmy, 0u}, {FrictionLaw::samosat, 1u}}) {
-    o.base.law = law;
-    std::vector<Fault> faults;
-    recipe::find_unmet(o, faults);
-    EXPECT_EQ(faults.size(), count);
-  }
-}
-
 }  // namespace
 }  // namespace talus::testing
