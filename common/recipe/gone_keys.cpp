@@ -19,6 +19,7 @@ constexpr GoneKey gone_keys[] = {
     {"solve.implicit.preconditioner",
      "Leave it out; it is the 3 x 3 block of each node, and the diagonal with preset = \"reference\""},
     {"solve.implicit.tangent", "Leave it out; the tangent is symmetric, with the yield stress held"},
+    {"solve.vdb_frames", "Leave it out; run.h5 holds the points (point_frames)"},
 };
 
 }  // namespace

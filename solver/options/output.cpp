@@ -51,7 +51,6 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.number("map_threshold_m", map_threshold, recipe::positive,
            "thickness from which speed, pressure and arrival count");
   v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
-  v.flag("vdb_frames", vdb_frames, "write the material points of each frame as frames/*.vdb as well");
   v.flag("energy_budget", energy_budget,
          "explicit and column-implicit steps: keep what is lost to the bed, to plastic flow, to damping and between "
          "points and grid, and "

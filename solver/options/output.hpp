@@ -43,7 +43,6 @@ struct OutputOptions {
   double checkpoint_interval = 0;  ///< simulated [s]; 0: only when interrupted
   double map_threshold = 0.1;      ///< [m]
   bool point_frames = true;
-  bool vdb_frames = false;
   bool energy_budget = false;
   bool deterministic = false;
   std::vector<std::string> accept;  ///< what is refused as implausible, insisted on by name

@@ -72,7 +72,6 @@ std::vector<std::string> features(const Plan& plan) {
     add("gauge", fmt::format("{}, at x {}, y {}", gauge.name, gauge.x, gauge.y));
   if (!o.loads.empty()) add("loads", fmt::format("{}", o.loads.size()));
   if (o.deterministic) add("sums", "in a fixed order (deterministic)");
-  if (o.vdb_frames) add("frames", "points as .vdb too");
   return lines;
 }
 

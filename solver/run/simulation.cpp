@@ -37,7 +37,7 @@ Simulation::Simulation(std::shared_ptr<const Plan> plan, const AnyDevice& device
     : paths_(std::move(paths)),
       marks_{std::move(fingerprint)},
       loop_(std::move(plan), device),
-      frames_(loop_.scene(), loop_.options(), paths_.frames, paths_.vdb_frames) {}
+      frames_(loop_.scene(), loop_.options(), paths_.frames) {}
 
 void Simulation::resume(const std::filesystem::path& file) {
   Checkpoint checkpoint = read_checkpoint(file, marks_.fingerprint);
@@ -165,7 +165,6 @@ RunSummary Simulation::finish(RunSummary summary) {
   log_detail(fmt::format("files: {:.1f} s after the last step", timer_.seconds() - loop_.memory().wall_time));
   remove_for_good(paths_.checkpoint);  // the run is whole: nothing is left to go on with
   frames_.clear();                     // after the checkpoint that counts on them
-  frames_.drop_older_vdb(loop_.memory().frames);
   return summary;
 }
 

@@ -19,9 +19,9 @@ namespace talus::solver {
 
 /// The files of a run in its output folder.
 struct RunPaths {
-  std::filesystem::path run, checkpoint, frames, vdb_frames;
+  std::filesystem::path run, checkpoint, frames;
   explicit RunPaths(const std::filesystem::path& out)
-      : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames"), vdb_frames(out / "frames") {}
+      : run(out / "run.h5"), checkpoint(out / "checkpoint.h5"), frames(out / ".frames") {}
 };
 
 /// This function removes what the run that is whole went on from, its checkpoint and its frames, if the process was

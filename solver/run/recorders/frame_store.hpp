@@ -31,10 +31,4 @@ class FrameStore {
   std::string run_id_ = {};
 };
 
-/// This function writes the points of a frame as `file` (OpenVDB PointDataGrid with velocity, volume, pressure, id),
-/// for Houdini, Blender, ParaView, with the id of the run in its metadata. It throws DataError when it cannot be
-/// written.
-void write_points_vdb(const std::filesystem::path& file, const PointFrame& frame, double spacing,
-                      const std::string& run_id);
-
 }  // namespace talus::solver

@@ -4,15 +4,12 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
 
-FrameRecorder::FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store,
-                             std::filesystem::path vdb_folder)
-    : scene_(scene), options_(options), vdb_folder_(std::move(vdb_folder)), store_(std::move(store)) {}
+FrameRecorder::FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store)
+    : scene_(scene), options_(options), store_(std::move(store)) {}
 
 PointFrame FrameRecorder::point_frame(double time, const ParticleState& s) const {
   const auto materials = make_materials<double>(options_, scene_.grid.spacing, scene_.grid.layer_height);
@@ -36,32 +33,13 @@ PointFrame FrameRecorder::point_frame(double time, const ParticleState& s) const
   return frame;
 }
 
-void FrameRecorder::belong_to(const std::string& run_id) {
-  run_id_ = run_id;
-  store_.belong_to(run_id);
-}
-
-std::filesystem::path FrameRecorder::vdb_file(std::int64_t number) const {
-  return vdb_folder_ / fmt::format("points_{:05}.vdb", number);
-}
-
-void FrameRecorder::drop_older_vdb(std::int64_t count) const {
-  if (!options_.vdb_frames) return;
-  std::error_code none_there;
-  for (std::int64_t number = count; std::filesystem::remove(vdb_file(number), none_there); ++number) {
-  }
-}
-
 void FrameRecorder::put(double time, std::int64_t number, Solver& solver) {
-  const bool points = options_.point_frames || options_.vdb_frames;
+  const bool points = options_.point_frames;
   writing_.start(
-      [this, time, number, thickness = solver.thickness(), state = points ? solver.shown() : ParticleState{}] {
-        PointFrame frame = point_frame(time, state);
-        if (options_.vdb_frames) write_points_vdb(vdb_file(number), frame, scene_.map.cell, run_id_);
-        if (!options_.point_frames) {
-          frame = {};
-          frame.time = time;
-        }
+      [this, time, number, points, thickness = solver.thickness(), state = points ? solver.shown() : ParticleState{}] {
+        PointFrame frame;
+        if (points) frame = point_frame(time, state);
+        frame.time = time;
         store_.put(number, frame, scene_.map, thickness);
       });
 }

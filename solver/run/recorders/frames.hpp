@@ -15,16 +15,13 @@ namespace talus::solver {
 /// The recorder of frames, which are written while the run goes on.
 class FrameRecorder {
  public:
-  /// The constructor keeps references to scene and options. Frames go to the folder `store` until the end of the run;
-  /// points as .vdb, where the recipe asks for them, to `vdb_folder`.
-  FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store,
-                std::filesystem::path vdb_folder);
+  /// The constructor keeps references to scene and options. Frames go to the folder `store` until the end of the run.
+  FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store);
 
   /// From now on frames are those of this run; each carries its id.
-  void belong_to(const std::string& run_id);
-  void clear() { store_.clear(); }                ///< drops all frames, of whichever run
-  void drop_others() { store_.drop_others(); }    ///< drops the frames of other runs
-  void drop_older_vdb(std::int64_t count) const;  ///< drops points as .vdb that a longer run before has left
+  void belong_to(const std::string& run_id) { store_.belong_to(run_id); }
+  void clear() { store_.clear(); }              ///< drops all frames, of whichever run
+  void drop_others() { store_.drop_others(); }  ///< drops the frames of other runs
   /// The method throws DataError unless frames 0 .. count-1 are there.
   void expect(std::int64_t count) const { store_.expect(count); }
   /// The method takes the state at once; the file is written while the run goes on. It throws what writing the frame
@@ -37,13 +34,10 @@ class FrameRecorder {
   void append_to(RunWriter& run, std::int64_t number) const { store_.append_to(run, number, scene_.map); }
 
  private:
-  std::filesystem::path vdb_file(std::int64_t number) const;
   PointFrame point_frame(double time, const ParticleState& points) const;
 
   const Scene& scene_;
   const SolveOptions& options_;
-  std::filesystem::path vdb_folder_;
-  std::string run_id_ = {};
   FrameStore store_;
   SideWork writing_;  ///< last: what it does needs the rest
 };

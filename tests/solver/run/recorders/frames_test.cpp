@@ -24,7 +24,7 @@ TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
   SolveOptions o;
   const Scene scene = make_scene(d, o);
   const auto solver = make_solver(scene, o, On::cpu);
-  FrameRecorder frames(scene, o, scratch / "frames", scratch / "vdb");
+  FrameRecorder frames(scene, o, scratch / "frames");
   frames.belong_to("a1");
   frames.put(0, 0, *solver);
   run_to(*solver, 0.1);
@@ -68,21 +68,6 @@ TEST(FrameStore, keeps_the_frames_of_runs_apart) {
   EXPECT_NE(fault.find("frame_00001.h5: a frame of the run b2 (this is the run a1)"), std::string::npos) << fault;
   store.drop_others();
   EXPECT_EQ(test::names_in(scratch / "frames"), std::vector<std::string>{"a1"});
-}
-
-TEST(PointsVdb, that_cannot_be_written_are_a_fault_like_that_of_any_other_file) {
-  const test::Scratch scratch;
-  const auto file = scratch / "points.vdb";
-  std::filesystem::create_directory(file);  // where the file is to go
-  const PointFrame frame{.time = 0,
-                         .position = {{1, 2, 3}},
-                         .velocity = {{0, 0, 0}},
-                         .volume = {1},
-                         .pressure = {0},
-                         .id = {0},
-                         .release = {0}};
-  const std::string fault = test::fault_of<DataError>([&] { write_points_vdb(file, frame, 1, "a1"); });
-  EXPECT_EQ(fault.rfind(file.string() + ": cannot be written (", 0), 0u) << fault;
 }
 
 }  // namespace
