@@ -81,8 +81,7 @@ demo: say-demo build ## the synthetic valley from its two elevation models to a 
 	  '  maps/synthetic-valley.qgs    all of it in QGIS: maps, outlines, hillshade' \
 	  '  maps/*.tif, maps/results.nc  the fields, for a GIS' \
 	  '  score.json, score.txt        these numbers and all others' \
-	  '  3d/run.pvd                   ground, flow and points over time, for ParaView' \
-	  '  3d/volumes/*.vdb             density and velocity over time, for Blender'
+	  '  3d/run.pvd                   ground, flow and points over time, for ParaView'
 
 # One slide on two beds: friction that falls with slip speed, and the friction of its start kept.
 weakening := $(OUT)/synthetic-weakening
@@ -162,7 +161,7 @@ check-faults: with-tests ## kills, failing calls, processes in one folder, power
 	    --shim $(BUILD)/bin/talus-faults.so --work $(BUILD)/scratch/check-faults \
 	    --table $(BUILD)/faults-$$scene.md || exit 1; done
 
-check-three-d: build ## what runs leave in 3d/, opened by ParaView, Blender and OpenVDB's Python; pictures compared
+check-three-d: build ## what runs leave in 3d/, opened by ParaView; picture compared
 	@tools/install-dependencies.sh three-d
 	@tests/three_d/check.sh $(BUILD)/bin $(BUILD)/scratch/check-three-d
 

@@ -8,7 +8,7 @@
 #   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations
 #   qgis      what `make check-qgis` needs: QGIS itself, about 1 GB
 #   lint, docs, fuzz, package     what `make lint`, `make docs`, `make fuzz` and `make check-install` need
-#   three-d   ParaView and Blender, for `make check-three-d`
+#   three-d   ParaView, for `make check-three-d`
 set -euo pipefail
 
 build=(
@@ -42,8 +42,8 @@ qgis=(qgis python3-qgis qgis-providers gdal-bin)
 lint=(clang-format clang-tidy)
 fuzz=(clang)   # libFuzzer comes with its run-time library
 package=(dpkg-dev file mmdebstrap)   # CPack asks file which programs there are
-# what opens 3d/: ParaView and Blender, a display for ParaView, readers for what they are compared with
-three_d=(paraview python3-paraview blender python3-openvdb python3-h5py python3-numpy python3-gdal xvfb xauth)
+# ParaView, a display for it, readers of run.h5 and of pictures
+three_d=(paraview python3-paraview python3-h5py python3-numpy python3-gdal xvfb xauth)
 
 # The report is opened in a browser by its test: Debian's. Ubuntu's packages of these names only lead to the snap store,
 # whose browser cannot be driven; the test says so there and is skipped.

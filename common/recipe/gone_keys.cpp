@@ -11,6 +11,8 @@ struct GoneKey {
 };
 
 constexpr GoneKey gone_keys[] = {
+    {"postprocess.three_d.volumes", "Leave it out; 3d/run.pvd opens in ParaView"},
+    {"postprocess.three_d.voxel_m", "Leave it out; 3d/run.pvd opens in ParaView"},
     {"solve.flip_fraction", "Give transfer_time_s, the time over which velocity finer than the grid decays"},
     {"solve.ground_contact", "Leave it out; mapping = \"terrain-following\" meets steep ground where it is"},
     {"solve.implicit.linear_solver=bicgstab", "Take linear_solver = \"pcg\""},

@@ -182,7 +182,7 @@ void Options::describe(recipe::Visitor& v) {
          "centre of mass");
   recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
                  "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
-  recipe::table(v, "three_d", three_d, "OUT/3d: what ParaView, Blender and Houdini open; and the report's view in 3-D");
+  recipe::table(v, "three_d", three_d, "OUT/3d, for ParaView, and the report's view in 3-D");
   recipe::table(
       v, "survey", survey,
       "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");

@@ -10,16 +10,13 @@
 #include "postprocess/score/thalweg.hpp"
 #include "postprocess/three_d/meshes.hpp"
 #include "postprocess/three_d/three_d.hpp"
-#include "postprocess/three_d/volumes.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 // Packed bytes, as measured on the synthetic valley and Frank Slide (docs/how-to/results.md): of a cell under the flow
-// 36 and 31, of a cell of the ground 17 and 21, of a point 26 and 27, of a voxel 20 and 14. A cell of the ground as PLY
-// is not packed.
-constexpr double bytes_of_a_vertex = 34, bytes_of_ground = 20, bytes_of_a_point = 27, bytes_of_a_voxel = 16;
-constexpr double bytes_of_plain_ground = 29;
+// 36 and 31, of a cell of the ground 17 and 21, of a point 26 and 27.
+constexpr double bytes_of_a_vertex = 34, bytes_of_ground = 20, bytes_of_a_point = 27;
 
 /// Cells that the flow covers, over all frames.
 double covered_cells(const Run& run) {
@@ -29,20 +26,9 @@ double covered_cells(const Run& run) {
   return count;
 }
 
-/// Voxels that the points' hats reach: over each cell with mass the thickness and a layer more, and a ring of cells.
-double covered_voxels(const Run& run, double voxel) {
-  const Voxels voxels(run, voxel);
-  const double across = voxels.division() * voxels.division();
-  double count = 0;
-  for (const std::vector<double>& thickness : run.frames.thickness)
-    for (const double h : thickness)
-      if (h > thinnest_surface) count += across * ((h + voxels.layer_height()) / voxels.side() + 1);
-  return count;
-}
-
 void need_points(const ThreeDOptions& options, const PointFrames& points) {
-  if (points.most_points() > 0 || !(options.points || options.volumes)) return;
-  throw DataError({fmt::format("[postprocess.three_d] {} = true", options.points ? "points" : "volumes"),
+  if (points.most_points() > 0 || !options.points) return;
+  throw DataError({"[postprocess.three_d] points = true",
                    "the run holds no points over time ([solve] point_frames = false, or no frame interval)",
                    "Run talus-solve with point_frames = true, or leave this out"});
 }
@@ -55,8 +41,6 @@ ThreeDSize size_of_three_d(const ThreeDOptions& options, const Run& run, const P
   if (options.surface) size.surface = bytes_of_a_vertex * covered_cells(run) / 1e6;
   if (options.terrain) size.terrain = bytes_of_ground * cells / 1e6;
   if (options.points) size.points = bytes_of_a_point * static_cast<double>(points.all_points()) / 1e6;
-  if (options.volumes)
-    size.volumes = (bytes_of_a_voxel * covered_voxels(run, options.voxel) + bytes_of_plain_ground * cells) / 1e6;
   return size;
 }
 
@@ -64,12 +48,11 @@ void check_three_d(const ThreeDOptions& options, const Run& run, const PointFram
   if (!options.writes()) return;
   need_points(options, points);
   const ThreeDSize size = size_of_three_d(options, run, points);
-  const auto words =
-      fmt::format("3d/ will take about {:.3g} MB (surface {:.3g}, terrain {:.3g}, points {:.3g}, volumes {:.3g})",
-                  size.all(), size.surface, size.terrain, size.points, size.volumes);
+  const auto words = fmt::format("3d/ will take about {:.3g} MB (surface {:.3g}, terrain {:.3g}, points {:.3g})",
+                                 size.all(), size.surface, size.terrain, size.points);
   if (size.all() > options.largest)
     throw DataError({words, fmt::format("[postprocess.three_d] largest_MB = {:g}", options.largest),
-                     "Raise it, leave points or volumes out, or give voxel_m a larger value"});
+                     "Raise it, or leave points out"});
   log_info(words);
 }
 

@@ -9,12 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "common/domain/volume_file.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/three_d/meshes.hpp"
-#include "postprocess/three_d/ply_file.hpp"
-#include "postprocess/three_d/volumes.hpp"
 #include "postprocess/three_d/vtk_file.hpp"
 
 namespace talus::postprocess {
@@ -42,7 +39,6 @@ class ThreeDWriter {
     }
     if (options_.surface) write_surfaces();
     if (options_.points) write_points();
-    if (options_.volumes) write_volumes();
     write_scene();
     return std::move(results_);
   }
@@ -67,19 +63,6 @@ class ThreeDWriter {
       put("points", i, points_.time()[i], point_mesh(points_.read(i)));
     }
     collect("points", of_points_);
-  }
-
-  void write_volumes() {
-    make_folder(folder_ / "volumes");
-    const Voxels voxels(run_, options_.voxel);
-    write_ply(folder_ / "volumes" / "terrain.ply", terrain_mesh(run_.maps), voxels.origin());
-    for (std::size_t i = 0; i < points_.time().size(); ++i) {
-      step("volumes", i, points_.time().size());
-      const fs::path file = folder_ / "volumes" / fmt::format("flow.{:04}.vdb", i);
-      write_volume_file(file, voxels.volume(run_, points_.read(i)));
-      if (i == 0) results_.push_back(file);
-    }
-    results_.push_back(folder_ / "volumes" / "terrain.ply");
   }
 
   void put(const std::string& what, std::size_t number, double time, const VtkMesh& mesh) {

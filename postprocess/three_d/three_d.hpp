@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OUT/3d: a run for ParaView (meshes and points over time), Blender and Houdini (volumes over time).
+// OUT/3d: a run for ParaView, as meshes and points over time.
 #pragma once
 
 #include <filesystem>
@@ -13,24 +13,23 @@
 
 namespace talus::postprocess {
 
-/// What OUT/3d will take, about, in MB of 1e6 bytes: from counts of points, cells and voxels and what each of them took
+/// What OUT/3d will take, about, in MB of 1e6 bytes: from counts of points and cells and what each of them took
 /// in runs that were measured (docs/how-to/results.md).
 struct ThreeDSize {
-  double surface = 0, terrain = 0, points = 0, volumes = 0;
-  double all() const { return surface + terrain + points + volumes; }
+  double surface = 0, terrain = 0, points = 0;
+  double all() const { return surface + terrain + points; }
 };
 
 ThreeDSize size_of_three_d(const ThreeDOptions& options, const Run& run, const PointFrames& points);
 
-/// Says how much OUT/3d will take. Throws DataError: more than is allowed; volumes or points of a run that has none;
-/// a voxel that is no whole part of a cell.
+/// Says how much OUT/3d will take. Throws DataError: more than is allowed; points of a run that has none.
 void check_three_d(const ThreeDOptions& options, const Run& run, const PointFrames& points);
 
 /// Removes what an earlier run left in `folder`, by the names that write_three_d() gives.
 void remove_three_d(const std::filesystem::path& folder);
 
 /// Writes what `options` ask for into `folder`, made where it is missing: SCENE.pvd (all of it), surface.pvd,
-/// points.pvd, terrain.vtp, volumes/flow.NNNN.vdb. Returns the files to open: of volumes the first. Throws DataError,
+/// points.pvd, terrain.vtp. Returns the files to open. Throws DataError,
 /// Interrupted.
 std::vector<std::filesystem::path> write_three_d(const std::filesystem::path& folder, const ThreeDOptions& options,
                                                  const Run& run, const PointFrames& points);

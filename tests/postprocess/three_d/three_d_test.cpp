@@ -29,11 +29,10 @@ class ThreeD : public ::testing::Test {
   const std::filesystem::path folder_ = scratch_ / "3d";
 };
 
-const ThreeDOptions all_of_it{.points = true, .volumes = true};
+const ThreeDOptions all_of_it{.points = true};
 
 TEST_F(ThreeD, writes_what_is_asked_for_and_names_what_to_open) {
-  EXPECT_EQ(written(all_of_it), (std::vector<std::string>{"terrain.vtp", "surface.pvd", "points.pvd",
-                                                          "volumes/flow.0000.vdb", "volumes/terrain.ply", "run.pvd"}));
+  EXPECT_EQ(written(all_of_it), (std::vector<std::string>{"terrain.vtp", "surface.pvd", "points.pvd", "run.pvd"}));
   EXPECT_EQ(test::names_in(folder_ / "surface"), (std::vector<std::string>{"surface.0000.vtp", "surface.0001.vtp"}));
   EXPECT_EQ(test::names_in(folder_ / "points"), (std::vector<std::string>{"points.0000.vtp"}));
   const std::string all = test::text_of(folder_ / "run.pvd");
@@ -49,10 +48,8 @@ TEST_F(ThreeD, writes_the_ground_and_the_surface_unless_told_otherwise) {
 TEST_F(ThreeD, removes_what_an_earlier_run_left_and_nothing_else) {
   written(all_of_it);
   std::ofstream(folder_ / "mine.pvsm") << "a state of ParaView";
-  std::ofstream(folder_ / "volumes" / "scene.blend") << "a scene of Blender";
   remove_three_d(folder_);
-  EXPECT_EQ(test::names_in(folder_), (std::vector<std::string>{"mine.pvsm", "volumes"}));
-  EXPECT_EQ(test::names_in(folder_ / "volumes"), (std::vector<std::string>{"scene.blend"}));
+  EXPECT_EQ(test::names_in(folder_), (std::vector<std::string>{"mine.pvsm"}));
   remove_three_d(scratch_ / "none");
 }
 
@@ -82,19 +79,13 @@ TEST_F(ThreeD, more_than_is_allowed_is_refused_with_its_parts) {
   EXPECT_NE(fault.find("largest_MB = 0.01"), std::string::npos) << fault;
 }
 
-TEST_F(ThreeD, points_and_volumes_need_frames_of_points) {
+TEST_F(ThreeD, points_need_frames_of_points) {
   RunWriter writer(scratch_ / "none.h5");
   writer.finish(run_.maps, {}, run_.summary);
   const PointFrames none(scratch_ / "none.h5");
-  EXPECT_NE(test::fault_of<DataError>([&] { check_three_d({.volumes = true}, run_, none); }).find("point_frames"),
+  EXPECT_NE(test::fault_of<DataError>([&] { check_three_d({.points = true}, run_, none); }).find("point_frames"),
             std::string::npos);
   check_three_d({}, run_, none);
-}
-
-TEST_F(ThreeD, a_voxel_that_is_no_part_of_a_cell_is_refused_before_anything_is_written) {
-  ThreeDOptions options = all_of_it;
-  options.voxel = 3;
-  EXPECT_THROW(check_three_d(options, run_, PointFrames(scratch_ / "run.h5")), DataError);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "common/error.hpp"
-#include "postprocess/three_d/ply_file.hpp"
 #include "tests/postprocess/three_d/vtk_reader.hpp"
 
 namespace talus::postprocess {
@@ -101,21 +100,6 @@ TEST(VtkFile, a_collection_names_a_file_for_each_time) {
   const std::string text = test::text_of(scratch / "a.pvd");
   EXPECT_NE(text.find("<DataSet timestep=\"0\" part=\"0\" file=\"surface/surface.0000.vtp\"/>"), std::string::npos);
   EXPECT_NE(text.find("<DataSet timestep=\"2.5\" part=\"1\" file=\"a &amp; b.vtp\"/>"), std::string::npos);
-}
-
-TEST(PlyFile, holds_metres_from_its_origin) {
-  const test::Scratch scratch;
-  write_ply(scratch / "a.ply", square(), {600000, 5100000, 1});
-  const std::string text = test::text_of(scratch / "a.ply"), mark = "end_header\n";
-  EXPECT_NE(text.find("comment metres from 600000.000000 5100000.000000 1.000000\n"), std::string::npos);
-  EXPECT_NE(text.find("element vertex 4\n"), std::string::npos);
-  const std::size_t data = text.find(mark) + mark.size();
-  ASSERT_EQ(text.size(), data + 4 * 12 + 17);
-  float third[3];
-  std::memcpy(third, text.data() + data + 24, sizeof third);
-  EXPECT_EQ(third[0], 10);
-  EXPECT_EQ(third[1], 10);
-  EXPECT_EQ(third[2], 2);
 }
 
 }  // namespace
