@@ -10,18 +10,16 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/slide_options.hpp"
+#include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/run/run_facts.hpp"
 #include "common/stage/identity.hpp"
-#include "postprocess/budget/budget_table.hpp"
 #include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
-#include "postprocess/picture/animation.hpp"
 #include "postprocess/slides/run_slides.hpp"
 #include "postprocess/survey/found_survey.hpp"
 #include "postprocess/survey/order.hpp"
-#include "postprocess/three_d/three_d.hpp"
-#include "postprocess/write_results.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -140,13 +138,27 @@ void warn_of_other_title(const StageContext& context, const RunSummary& run) {
                     run.title, run.scene, context.recipe.title(), context.recipe.scene_name()));
 }
 
-}  // namespace
+std::string used_text(const StageContext& context, const Job& job) {
+  auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
+  inputs.insert(inputs.begin(), job.file);
+  if (job.thalweg.given) inputs.push_back(job.options.thalweg);
+  for (const fs::path& polygons : hazard_inputs(job.options)) inputs.push_back(polygons);
+  return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
+                     {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
+}
 
-namespace {
+void write_results(StageContext& context, Job& job) {
+  job.score = make_score(job.run, job.options, job.survey, job.thalweg, &job.hazard);
+  job.options.writers.remove_outdated(context.out);
+  const Files files = job.options.writers.write(job);
+  context.results.insert(context.results.end(), files.begin(), files.end());
+  log_info("\n" + to_table(job.score));
+  if (job.budget) log_info("\n" + budget_words(*job.budget));
+}
 
 void run_single(StageContext& context, const Options& options) {
-  Job job;
-  job.options = options;
+  Job job{.options = options, .out = context.out, .command_line = context.command_line};
+  job.used = [&] { return used_text(context, job); };
   Acceptance acceptance("postprocess", job.options.accept);
   if (job.options.survey.from_preprocess) require_whole_survey(context.out);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
@@ -180,9 +192,8 @@ void run_single(StageContext& context, const Options& options) {
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
-  check_animation(job.options.animation, job.run);
-  check_three_d(job.options.three_d, job.run, PointFrames(job.file));
-  if (!context.check_only) write_results(context, job, stage());
+  job.options.writers.check(job);
+  if (!context.check_only) write_results(context, job);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;
@@ -81,7 +82,30 @@ std::string part_of_name(const std::string& name) {
 
 char size_letter(double volume) { return volume < 25e3 ? 'S' : volume < 60e3 ? 'M' : 'L'; }
 
+class AvaframeWriter : public Writer {
+ public:
+  std::string name() const override { return "AvaFrame"; }
+  void describe(recipe::Visitor& v) override {
+    v.flag("avaframe", avaframe_,
+           "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
+           "maps/avaframe");
+    recipe::choice(v, "avaframe_format", avaframe_format_, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
+                   "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
+  }
+  bool wanted(const Job& /*job*/) const override { return avaframe_; }
+  std::vector<std::string> names() const override { return {"maps/avaframe/rel*_mpm*"}; }
+  Files write(const Job& job) const override {
+    return write_avaframe(folder_of(job, "maps/avaframe"), job.run, settings_text(job.run, job.file), avaframe_format_);
+  }
+
+ private:
+  bool avaframe_ = false;
+  AvaFrameFormat avaframe_format_ = AvaFrameFormat::tif;
+};
+
 }  // namespace
+
+std::shared_ptr<Writer> avaframe_writer() { return std::make_shared<AvaframeWriter>(); }
 
 std::string settings_text(const Run& run, const fs::path& run_file) {
   std::string text;

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "common/run/run_file.hpp"
-#include "postprocess/options/options.hpp"
 
 namespace talus::postprocess {
+
+/// Raster format: all versions of AvaFrame read .asc, newer ones .tif too.
+enum class AvaFrameFormat { tif, asc };
 
 /// What the run was made with, a line each, the same on every machine: the options in solve.used.toml beside `run_file`
 /// (where it lies there), and from the run's provenance all but command, hardware, version and the inputs' folders.

@@ -10,6 +10,7 @@
 #include "common/gis/geotiff.hpp"
 #include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 
@@ -20,13 +21,55 @@ std::string meaning_of_nodata(bool zero_inside, Outside outside) {
   return outside == Outside::zero ? "not used: 0 outside the computed domain too" : "outside the computed domain";
 }
 
+class GeotiffWriter : public Writer {
+ public:
+  std::string name() const override { return "GeoTIFF"; }
+  void describe(recipe::Visitor& v) override {
+    v.flag("nodata_zero", nodata_zero_,
+           "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
+  }
+  std::vector<std::string> names() const override { return names_of_maps(".tif"); }
+  std::vector<std::string> outdated() const override { return {}; }
+  Files write(const Job& job) const override {
+    return write_geotiffs(folder_of(job, "maps"), job.run, nodata_zero_ ? Outside::zero : Outside::nodata);
+  }
+
+ private:
+  bool nodata_zero_ = false;
+};
+
 }  // namespace
 
-std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& folder, const Run& run,
-                                                  Outside outside) {
-  std::vector<std::filesystem::path> files;
-  const auto put = [&](const std::string& name, const char* long_name, const char* unit, bool zero_inside,
-                       Raster raster) {
+std::shared_ptr<Writer> geotiff_writer() { return std::make_shared<GeotiffWriter>(); }
+
+RasterTags plain_tags(const Run& run, const std::string& quantity, const std::string& unit) {
+  return {fmt::format("{} [{}]", quantity, unit),
+          unit,
+          {{"TITLE", run.summary.title},
+           {"SCENE", run.summary.scene},
+           {"RUN_ID", fact(run.summary.provenance, run_id)},
+           {"QUANTITY", quantity},
+           {"SOURCE", "Talus " + run.summary.version}}};
+}
+
+std::vector<std::string> names_of_maps(const std::string& end) {
+  std::vector<std::string> names{"maps/deposit_thickness_*" + end};
+  for (const MapField& field : map_fields) names.push_back(fmt::format("maps/{}{}", field.name, end));
+  return names;
+}
+
+Files geotiff_files(const std::filesystem::path& folder, const RunMaps& maps) {
+  Files files;
+  for (const MapField& field : product_fields(maps)) files.push_back(folder / (std::string(field.name) + ".tif"));
+  for (const std::string& word : file_words(maps.deposit_of))
+    files.push_back(folder / ("deposit_thickness_" + word + ".tif"));
+  return files;
+}
+
+Files write_geotiffs(const std::filesystem::path& folder, const Run& run, Outside outside) {
+  const Files files = geotiff_files(folder, run.maps);
+  auto file = files.begin();
+  const auto put = [&](const char* long_name, const char* unit, bool zero_inside, Raster raster) {
     if (zero_inside && outside == Outside::zero)
       std::replace_if(
           raster.values.begin(), raster.values.end(), [](double v) { return std::isnan(v); }, 0.0);
@@ -44,17 +87,12 @@ std::vector<std::filesystem::path> write_geotiffs(const std::filesystem::path& f
     if (const std::string accepted = accepted_words(run.summary); !accepted.empty())
       tags.metadata.emplace_back("ACCEPTED", accepted);
     if (!run.summary.sanity.words.empty()) tags.metadata.emplace_back("SANITY", run.summary.sanity.words);
-    files.push_back(folder / (name + ".tif"));
-    write_cog(files.back(), raster, tags);
+    write_cog(*file++, raster, tags);
   };
   for (const MapField& field : product_fields(run.maps))
-    put(field.name, field.product.title, field.unit, field.product.zero_inside, field_raster(run.maps, field));
-  const std::vector<std::string> words = file_words(run.maps.deposit_of);
-  for (std::size_t r = 0; r < words.size(); ++r) {
-    const std::vector<double>& values = run.maps.deposit_of[r].second;
-    put("deposit_thickness_" + words[r], "deposit thickness of one release, vertical", "m", true,
-        values_raster(run.maps, values, true));
-  }
+    put(field.product.title, field.unit, field.product.zero_inside, field_raster(run.maps, field));
+  for (const auto& [release, values] : run.maps.deposit_of)
+    put("deposit thickness of one release, vertical", "m", true, values_raster(run.maps, values, true));
   return files;
 }
 

@@ -17,9 +17,9 @@
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/fields/window.hpp"
-#include "postprocess/maps/gis_time.hpp"
+#include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/hazard_maps.hpp"
-#include "postprocess/maps/outlines.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;
@@ -36,14 +36,7 @@ const OutlineStyle critical_line{{0.75, 0.0, 0.10}, 0.7, false};
 
 fs::path write_elevation(fs::path file, const Run& run, const std::vector<double>& values,
                          const std::string& quantity) {
-  write_cog(file, {run.maps.grid, values},
-            {quantity + " [m]",
-             "m",
-             {{"TITLE", run.summary.title},
-              {"SCENE", run.summary.scene},
-              {"RUN_ID", fact(run.summary.provenance, run_id)},
-              {"QUANTITY", quantity},
-              {"SOURCE", "Talus " + run.summary.version}}});
+  write_cog(file, {run.maps.grid, values}, plain_tags(run, quantity, "m"));
   return file;
 }
 
@@ -60,16 +53,16 @@ ProjectLayer outline(const std::string& name, const std::string& layer, const Ou
   return {name, "outlines.gpkg|layername=" + layer, shown, style};
 }
 
-ProjectGroup outline_group(const GisInput& input) {
-  const auto& options = input.options;
+ProjectGroup outline_group(const Job& job) {
+  const auto& options = job.options;
   ProjectGroup group{"Outlines", {}};
-  if (input.survey)
+  if (job.survey)
     group.layers.push_back(
-        outline((input.survey->kind == ReferenceKind::model ? "Reference: " : "Survey: ") + input.survey->name,
-                "survey", survey_line));
+        outline((job.survey->kind == ReferenceKind::model ? "Reference: " : "Survey: ") + job.survey->name, "survey",
+                survey_line));
   const double deposit = options.deposit_threshold, footprint = options.footprint_threshold;
   group.layers.push_back(outline("Release", "release", release_line));
-  if (!input.run.maps.critical_thickness.empty())
+  if (!job.run.maps.critical_thickness.empty())
     group.layers.push_back(outline("Critical mass", "critical", critical_line));
   group.layers.push_back(outline(fmt::format("Deposit above {:g} m", deposit),
                                  fmt::format("deposit|subset=threshold_m = {}", deposit), deposit_line));
@@ -90,29 +83,29 @@ std::string legend_name(const std::string& map) {
 }
 
 /// What stands around the map on paper.
-PrintLayout print_layout(const GisInput& input) {
-  const RunSummary& s = input.run.summary;
-  const std::string crs = crs_name(input.run.maps.grid.crs_wkt);
+PrintLayout print_layout(const Job& job) {
+  const RunSummary& s = job.run.summary;
+  const std::string crs = crs_name(job.run.maps.grid.crs_wkt);
   PrintLayout page{.title = s.title, .subtitle = {}, .sources = {}};
   page.subtitle = fmt::format("Landslide run-out simulation, scene {}, {:g} s simulated; {}", s.scene, s.time_end,
                               crs.empty() ? "local coordinates [m]" : crs);
   page.sources = fmt::format("Talus {}, material point method; map cell {:g} m; run {}.", s.version,
-                             input.run.maps.grid.cell, fact(s.provenance, run_id));
-  if (input.survey && input.survey->name != "survey") page.sources += " Reference: " + input.survey->name + ".";
-  if (!input.options.institution.empty()) page.sources += " Made by " + input.options.institution + ".";
+                             job.run.maps.grid.cell, fact(s.provenance, run_id));
+  if (job.survey && job.survey->name != "survey") page.sources += " Reference: " + job.survey->name + ".";
+  if (!job.options.institution.empty()) page.sources += " Made by " + job.options.institution + ".";
   page.sources +=
       " Thickness is vertical. Shading: ground before the failure. One run is one scenario, not a hazard map.";
   return page;
 }
 
-QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input) {
-  const auto& [run, options, survey, hazard, more] = input;
-  const Window window = affected_window(run.maps, options, survey);
+QgisProject project_of(const std::vector<fs::path>& maps, const Job& job) {
+  const Run& run = job.run;
+  const Options& options = job.options;
+  const Window window = affected_window(run.maps, options, job.survey);
   QgisProject project{
       run.summary.title, run.maps.grid.crs_wkt, {window.west, window.south, window.east, window.north}, {}};
-  project.groups.push_back(outline_group(input));
-  if (hazard != nullptr)
-    for (ProjectGroup& group : hazard_groups(*hazard)) project.groups.push_back(std::move(group));
+  project.groups.push_back(outline_group(job));
+  for (ProjectGroup& group : hazard_groups(job.hazard)) project.groups.push_back(std::move(group));
   ProjectGroup results{"Maps", {}};
   for (const auto& map : maps) {
     const std::string name = map.stem().string();
@@ -121,29 +114,46 @@ QgisProject project_of(const std::vector<fs::path>& maps, const GisInput& input)
         {legend_name(name), map.filename().string(), shown, map_style(name, run.maps, options.classes)});
   }
   project.groups.push_back(std::move(results));
-  project.groups.insert(project.groups.end(), more.begin(), more.end());
+  if (job.budget && !spread_maps(*job.budget).empty()) project.groups.push_back(spread_group(*job.budget));
   if (ProjectGroup flow = flow_group(run, options); !flow.layers.empty()) project.groups.push_back(std::move(flow));
   project.groups.push_back({"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}});
-  project.layout = print_layout(input);
+  project.layout = print_layout(job);
   return project;
 }
 
+class GisWriter : public Writer {
+ public:
+  std::string name() const override { return "QGIS project"; }
+  std::vector<std::string> names() const override {
+    auto files = names_of_maps(".qml");
+    files.insert(files.end(), {"maps/terrain.tif", "maps/sliding_surface.tif", "maps/outlines.gpkg", "maps/*.qgs"});
+    return files;
+  }
+  std::vector<std::string> outdated() const override { return {}; }
+  Files write(const Job& job) const override {
+    const fs::path folder = folder_of(job, "maps");
+    return write_gis(folder, geotiff_files(folder, job.run.maps), job);
+  }
+};
+
 }  // namespace
 
-std::vector<fs::path> write_gis(const fs::path& folder, const std::vector<fs::path>& maps, const GisInput& input) {
-  const auto& run = input.run;
+std::shared_ptr<Writer> gis_writer() { return std::make_shared<GisWriter>(); }
+
+std::vector<fs::path> write_gis(const fs::path& folder, const std::vector<fs::path>& maps, const Job& job) {
+  const auto& run = job.run;
   std::vector<fs::path> files;
   for (const auto& map : maps)
-    files.push_back(write_qgis_style(map, map_style(map.stem().string(), run.maps, input.options.classes)));
+    files.push_back(write_qgis_style(map, map_style(map.stem().string(), run.maps, job.options.classes)));
   const fs::path outlines = folder / "outlines.gpkg";
   const fs::path terrain =
       write_elevation(folder / "terrain.tif", run, run.maps.before, "elevation of the ground before the failure");
   if (!run.maps.critical_thickness.empty())
     files.push_back(write_elevation(folder / "sliding_surface.tif", run, surface_under(run.maps),
                                     "elevation of the surface under the mass that fails first"));
-  write_outlines(outlines, run.maps.grid.crs_wkt, map_outlines(run, input.options, input.survey));
+  write_outlines(outlines, run.maps.grid.crs_wkt, map_outlines(run, job.options, job.survey));
   const fs::path project = folder / (file_word(run.summary.scene) + ".qgs");
-  write_qgis_project(project, project_of(maps, input));
+  write_qgis_project(project, project_of(maps, job));
   files.insert(files.end(), {terrain, write_qgis_hillshade_style(terrain), outlines, project});
   return files;
 }

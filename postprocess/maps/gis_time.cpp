@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/maps/gis_time.hpp"
+#include "postprocess/maps/gis.hpp"
 
 #include <chrono>
 #include <cmath>

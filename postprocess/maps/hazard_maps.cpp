@@ -11,8 +11,9 @@
 #include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
 #include "common/qgis/style.hpp"
-#include "common/stage/identity.hpp"
 #include "postprocess/fields/styles.hpp"
+#include "postprocess/maps/geotiff.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;
@@ -21,16 +22,6 @@ namespace {
 const OutlineStyle reach_line{{0.55, 0.10, 0.55}, 0.6, true};
 const OutlineStyle building_line{{0.10, 0.10, 0.10}, 0.5, false};
 const OutlineStyle obstacle_line{{0.75, 0.05, 0.05}, 0.8, false};
-
-RasterTags tags_of(const Run& run, const std::string& quantity, const std::string& unit) {
-  return {fmt::format("{} [{}]", quantity, unit),
-          unit,
-          {{"TITLE", run.summary.title},
-           {"SCENE", run.summary.scene},
-           {"RUN_ID", fact(run.summary.provenance, run_id)},
-           {"QUANTITY", quantity},
-           {"SOURCE", "Talus " + run.summary.version}}};
-}
 
 /// A class for each code, from just below it.
 RasterStyle style_of(const IntensityMap& map) {
@@ -42,7 +33,7 @@ RasterStyle style_of(const IntensityMap& map) {
 }
 
 void write_intensity(const fs::path& folder, const Run& run, const IntensityMap& map, std::vector<fs::path>& files) {
-  RasterTags tags = tags_of(run, "class of intensity, " + map.guideline, "1");
+  RasterTags tags = plain_tags(run, "class of intensity, " + map.guideline, "1");
   tags.metadata.emplace_back("GUIDELINE", map.source);
   for (const IntensityClass& one : map.classes)
     tags.metadata.emplace_back(fmt::format("CLASS_{}", one.code), one.name + ": " + one.words);
@@ -61,7 +52,7 @@ std::string title_of(const ReachCone& cone) {
 
 void write_reach(const fs::path& folder, const Run& run, const std::vector<ReachCone>& cones,
                  std::vector<fs::path>& files) {
-  RasterTags tags = tags_of(run, "height of the energy line above the ground, " + title_of(cones.front()), "m");
+  RasterTags tags = plain_tags(run, "height of the energy line above the ground, " + title_of(cones.front()), "m");
   tags.metadata.emplace_back("H_OVER_L", fmt::format("{:.6g}", cones.front().tangent));
   tags.metadata.emplace_back("NODATA_MEANING", "not reached");
   files.push_back(folder / "reach_cone.tif");
@@ -103,7 +94,30 @@ void write_buildings(const fs::path& folder, const Run& run, const Hazard& hazar
   write_outlines(files.back(), run.maps.grid.crs_wkt, layers);
 }
 
+class HazardWriter : public Writer {
+ public:
+  std::string name() const override { return "hazard maps"; }
+  std::vector<std::string> names() const override {
+    return {"maps/intensity.tif",  "maps/intensity.qml", "maps/reach_cone.tif",
+            "maps/reach_cone.qml", "maps/reach.gpkg",    "maps/buildings.gpkg"};
+  }
+  Files write(const Job& job) const override { return write_hazard_maps(folder_of(job, "maps"), job.run, job.hazard); }
+};
+
+class BuildingsWriter : public Writer {
+ public:
+  std::string name() const override { return "buildings"; }
+  bool wanted(const Job& job) const override { return !job.hazard.buildings.empty(); }
+  std::vector<std::string> names() const override { return {"buildings.csv"}; }
+  Files write(const Job& job) const override {
+    return {write_file(job, "buildings.csv", buildings_table(job.hazard.buildings))};
+  }
+};
+
 }  // namespace
+
+std::shared_ptr<Writer> hazard_writer() { return std::make_shared<HazardWriter>(); }
+std::shared_ptr<Writer> buildings_writer() { return std::make_shared<BuildingsWriter>(); }
 
 std::vector<fs::path> write_hazard_maps(const fs::path& folder, const Run& run, const Hazard& hazard) {
   std::vector<fs::path> files;

@@ -9,6 +9,7 @@
 
 #include "common/stage/identity.hpp"
 #include "postprocess/maps/nc_file.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -71,7 +72,42 @@ int define_column(Nc& nc, int time, const HistoryColumn& column, const std::stri
   return id;
 }
 
+/// Time series as comma-separated values, a row for every record, time first.
+std::string history_table(const RunHistory& history) {
+  std::vector<const HistoryColumn*> order;
+  for (const HistoryColumn& column : history.columns) order.push_back(&column);
+  std::stable_partition(order.begin(), order.end(),
+                        [](const HistoryColumn* column) { return column->name == "time_s"; });
+  std::string text;
+  for (const HistoryColumn* column : order) text += (text.empty() ? "" : ",") + column->name;
+  const std::size_t rows = order.empty() ? 0 : order.front()->values.size();
+  for (std::size_t row = 0; row < rows; ++row) {
+    text += "\n";
+    for (const HistoryColumn* column : order)
+      text += fmt::format("{}{:.9g}", column == order.front() ? "" : ",", column->values[row]);
+  }
+  return text + "\n";
+}
+
+class HistoryWriter : public Writer {
+ public:
+  std::string name() const override { return "history"; }
+  std::vector<std::string> names() const override {
+    return {"history.csv", "history.nc", "gauges.csv", "sections.csv"};
+  }
+  std::vector<std::string> outdated() const override { return {"gauges.csv", "sections.csv"}; }
+  Files write(const Job& job) const override {
+    Files files{write_file(job, "history.csv", history_table(job.run.history)),
+                write_file(job, "history.nc", history_netcdf(job.run, job.options.start_time))};
+    for (const auto& [kind, rows] : place_tables(job.run.history))
+      files.push_back(write_file(job, kind + "s.csv", rows));
+    return files;
+  }
+};
+
 }  // namespace
+
+std::shared_ptr<Writer> history_writer() { return std::make_shared<HistoryWriter>(); }
 
 std::vector<std::pair<std::string, std::string>> place_tables(const RunHistory& history) {
   std::vector<std::pair<std::string, std::string>> tables;

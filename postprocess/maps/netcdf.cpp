@@ -16,6 +16,7 @@
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/nc_file.hpp"
 #include "postprocess/maps/nc_grid.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -132,7 +133,25 @@ void fill_in(Nc& nc, const Layout& layout, const Run& run) {
   }
 }
 
+class NetcdfWriter : public Writer {
+ public:
+  std::string name() const override { return "NetCDF"; }
+  std::vector<std::string> names() const override { return {"maps/results.nc"}; }
+  std::vector<std::string> outdated() const override { return {}; }
+  Files write(const Job& job) const override {
+    NetcdfNotes notes{job.options.institution, job.command_line, job.options.start_time, {}};
+    if (job.budget)
+      for (const SpreadMap& map : spread_maps(*job.budget))
+        notes.more.push_back({map.name, map.long_name, "m", "area: mean", &map.raster->values});
+    Files files{folder_of(job, "maps") / "results.nc"};
+    write_netcdf(files.front(), job.run, notes);
+    return files;
+  }
+};
+
 }  // namespace
+
+std::shared_ptr<Writer> netcdf_writer() { return std::make_shared<NetcdfWriter>(); }
 
 void write_netcdf(const std::filesystem::path& file, const Run& run, const NetcdfNotes& notes) {
   Nc nc(file);

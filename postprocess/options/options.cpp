@@ -152,6 +152,15 @@ void HazardOptions::describe(recipe::Visitor& v) {
            "Give a class for each pair"});
 }
 
+void ThreeDOptions::describe(recipe::Visitor& v) {
+  v.flag("surface", surface, "surface of the flow over time as a mesh, for ParaView: 3d/surface.pvd");
+  v.flag("terrain", terrain, "the ground with all maps on it, for ParaView: 3d/terrain.vtp");
+  v.flag("points", points, "the material points over time, for ParaView: 3d/points.pvd; needs a run with point frames");
+  v.number("largest_MB", largest, recipe::positive,
+           "most that may be written into 3d/, by an estimate that is made beforehand; more is refused");
+  v.flag("report", report, "a view in 3-D in the report: terrain, flow over time, deposit");
+}
+
 void Options::describe(recipe::Visitor& v) {
   v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
   v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
@@ -165,23 +174,14 @@ void Options::describe(recipe::Visitor& v) {
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.text("institution", institution, "who made this, for the NetCDF file");
   v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
-  recipe::choice(v, "animation", animation,
-                 {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
-                 "a film of the flow on the map; needs the program ffmpeg and a run with frames");
   v.text("start_time", start_time,
          "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
   v.needs(start_time.empty() || is_date(start_time), {"[postprocess] start_time = \"" + start_time + "\"",
                                                       "this is no date and time", "Write it as 1903-04-29 04:10:00"});
-  v.flag("nodata_zero", nodata_zero,
-         "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
-  v.flag("avaframe", avaframe,
-         "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
-         "maps/avaframe");
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");
-  recipe::choice(v, "avaframe_format", avaframe_format, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
-                 "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
+  writers.describe(v);
   recipe::table(v, "three_d", three_d, "OUT/3d, for ParaView, and the report's view in 3-D");
   recipe::table(
       v, "survey", survey,

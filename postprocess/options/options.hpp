@@ -9,7 +9,7 @@
 
 #include "common/recipe/recipe.hpp"
 #include "postprocess/options/hazard.hpp"
-#include "postprocess/options/three_d.hpp"
+#include "postprocess/options/writer.hpp"
 
 namespace talus::postprocess {
 
@@ -18,9 +18,6 @@ enum class Direction { vertical, slope_normal };
 
 /// What the simulation is compared with: what was surveyed, or the run of another model.
 enum class ReferenceKind { survey, model };
-
-/// How AvaFrame's rasters are written: every version of it reads .asc, newer ones .tif as well.
-enum class AvaFrameFormat { tif, asc };
 
 /// What the simulation is scored against. Nothing given: no score against a survey.
 struct SurveyOptions {
@@ -68,28 +65,37 @@ struct HazardOptions {
   void describe(recipe::Visitor& v);
 };
 
-/// A film of the flow.
-enum class Animation { none, mp4, gif };
+/// Contents of OUT/3d, for ParaView, and the report's view in 3-D.
+struct ThreeDOptions {
+  bool surface = true;    // of the flow over time, as a mesh
+  bool terrain = true;    // with the maps on it
+  bool points = false;    // material points over time
+  double largest = 4000;  // of 3d/, by estimate [MB]
+  bool report = true;     // a view in the report
 
+  /// True where something is written into OUT/3d.
+  bool writes() const { return surface || terrain || points; }
+  /// The method declares the keys with defaults and help.
+  void describe(recipe::Visitor& v);
+};
+
+/// Keys of [postprocess] that several outputs read; keys of one output are members of its writer.
 struct Options {
   std::filesystem::path run;         // empty = OUT/run.h5
   double footprint_threshold = 1.0;  // [m]
   double deposit_threshold = 1.0;    // [m]
   std::vector<double> classes;       // lower limits of the thickness classes [m]; empty = by the deposit's thickness
   std::string institution;
-  Animation animation = Animation::none;
   bool report = true;             // write report.html
   std::string start_time;         // when the failure began, UTC; empty = not known
-  bool nodata_zero = false;       // GeoTIFFs: 0 outside the domain too
-  bool avaframe = false;          // aliases for AvaFrame beside the maps
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
-  AvaFrameFormat avaframe_format = AvaFrameFormat::tif;
   SurveyOptions survey;
   IntensityOptions intensity;
   ReachConeOptions reach_cone;
   BuildingOptions buildings;
   ThreeDOptions three_d;
   HazardOptions hazard;
+  Writers writers;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
   /// The method declares the keys with defaults, help and what they need of one another.

@@ -15,7 +15,9 @@
 
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
+#include "postprocess/picture/map_picture.hpp"
 #include "postprocess/score/thalweg.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -23,6 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int seconds_at_the_end = 2;
+
+enum class Animation { none, mp4, gif };
 
 bool has_program(const std::string& name) {
   const char* path = std::getenv("PATH");
@@ -105,32 +109,46 @@ bool encode(const PictureInput& input, const std::string& tail, int rate) {
   return pipe && pipe->close();
 }
 
+class AnimationWriter : public Writer {
+ public:
+  std::string name() const override { return "animation"; }
+  void describe(recipe::Visitor& v) override {
+    recipe::choice(v, "animation", animation_,
+                   {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
+                   "a film of the flow on the map; needs the program ffmpeg and a run with frames");
+  }
+  bool wanted(const Job& /*job*/) const override { return animation_ != Animation::none; }
+  void check(const Job& job) const override {
+    if (!has_program("ffmpeg"))
+      throw DataError({"[postprocess] animation: ffmpeg was not found", "it makes the film",
+                       "Install it: apt-get install ffmpeg, or set animation = \"none\""});
+    const std::size_t frames = job.run.frames.time.size();
+    if (frames < 2)
+      throw DataError({fmt::format("[postprocess] animation: the run holds {} frames", frames), "a film needs two",
+                       "Set frame_interval_s of [solve] and run talus-solve again, or animation = \"none\""});
+  }
+  std::vector<std::string> names() const override { return {"animation.mp4", "animation.gif"}; }
+  Files write(const Job& job) const override {
+    fs::path file = job.out / (animation_ == Animation::gif ? "animation.gif" : "animation.mp4");
+    PendingFile pending(file);
+    const auto tail = encoding(animation_) + " " + quoted(pending.path().string());
+    if (!encode(picture_of(job), tail, film_rate(job.run.frames.time.size())))
+      throw DataError({file.string() + ": ffmpeg could not make it", "its own message is above",
+                       "Free space or name another folder with --out; animation = \"none\" leaves the film out"});
+    pending.commit();
+    return {file};
+  }
+
+ private:
+  Animation animation_ = Animation::none;
+};
+
 }  // namespace
 
 int film_rate(std::size_t frames) {
   return std::clamp(static_cast<int>(std::lround(static_cast<double>(frames) / 8)), 2, 25);
 }
 
-void check_animation(Animation animation, const Run& run) {
-  if (animation == Animation::none) return;
-  if (!has_program("ffmpeg"))
-    throw DataError({"[postprocess] animation: ffmpeg was not found", "it makes the film",
-                     "Install it: apt-get install ffmpeg, or set animation = \"none\""});
-  if (run.frames.time.size() < 2)
-    throw DataError({"[postprocess] animation: the run holds " + std::to_string(run.frames.time.size()) + " frames",
-                     "a film needs two",
-                     "Set frame_interval_s of [solve] and run talus-solve again, or animation = \"none\""});
-}
-
-fs::path write_animation(const fs::path& folder, const PictureInput& input, Animation animation) {
-  fs::path file = folder / (animation == Animation::gif ? "animation.gif" : "animation.mp4");
-  PendingFile pending(file);
-  const auto tail = encoding(animation) + " " + quoted(pending.path().string());
-  if (!encode(input, tail, film_rate(input.run.frames.time.size())))
-    throw DataError({file.string() + ": ffmpeg could not make it", "its own message is above",
-                     "Free space or name another folder with --out; animation = \"none\" leaves the film out"});
-  pending.commit();
-  return file;
-}
+std::shared_ptr<Writer> animation_writer() { return std::make_shared<AnimationWriter>(); }
 
 }  // namespace talus::postprocess

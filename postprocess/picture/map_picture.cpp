@@ -10,6 +10,7 @@
 #include "postprocess/picture/layers.hpp"
 #include "postprocess/picture/places.hpp"
 #include "postprocess/picture/search_words.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -43,7 +44,19 @@ RunMaps shown_maps(const PictureInput& input, const Window& window) {
   return cropped(maps, window);
 }
 
+class PictureWriter : public Writer {
+ public:
+  std::string name() const override { return "map picture"; }
+  std::vector<std::string> names() const override { return {"map.png"}; }
+  std::vector<std::string> outdated() const override { return {}; }
+  Files write(const Job& job) const override { return {write_file(job, "map.png", map_picture(picture_of(job)))}; }
+};
+
 }  // namespace
+
+std::shared_ptr<Writer> picture_writer() { return std::make_shared<PictureWriter>(); }
+
+PictureInput picture_of(const Job& job) { return {job.run, job.options, job.survey, job.score, {}, &job.hazard}; }
 
 std::string map_picture(const PictureInput& input) { return draw_map(input).png(); }
 

@@ -31,6 +31,9 @@ struct PictureInput {
   const Hazard* hazard = nullptr;    ///< its outlines are drawn as well
 };
 
+/// The picture of a job, without an instant.
+PictureInput picture_of(const Job& job);
+
 /// The map as it is drawn, on 200 dpi.
 Canvas draw_map(const PictureInput& input);
 

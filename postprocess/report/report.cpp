@@ -13,11 +13,14 @@
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
+#include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/window.hpp"
 #include "postprocess/report/filled_page.hpp"
 #include "postprocess/report/page.hpp"
 #include "postprocess/report/parts.hpp"
+#include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -64,7 +67,39 @@ Json map_json(const ReportInput& input) {
   return json;
 }
 
+/// The used recipes of earlier stages beside the run, if they belong to it, and this stage's.
+std::vector<StageText> texts_of_stages(const Job& job) {
+  std::vector<StageText> texts;
+  const Facts& facts = job.run.summary.provenance;
+  for (const auto& [stage, id] : {std::pair{"preprocess", fact(facts, domain_id)}, {"solve", fact(facts, run_id)}}) {
+    const std::filesystem::path file = job.file.parent_path() / (std::string(stage) + ".used.toml");
+    std::optional<std::string> text = text_if_there(file);
+    if (text && !is_used_recipe_of(*text, id)) {
+      log_warning(fmt::format("{}: it is of another run than {}; the report leaves it out", file.string(), id));
+      text.reset();
+    }
+    texts.push_back({stage, std::move(text)});
+  }
+  texts.push_back({"postprocess", text_if_there(job.out / "postprocess.used.toml")});
+  return texts;
+}
+
+class ReportWriter : public Writer {
+ public:
+  std::string name() const override { return "report"; }
+  bool wanted(const Job& job) const override { return job.options.report; }
+  std::vector<std::string> names() const override { return {"report.html"}; }
+  Files write(const Job& job) const override {
+    return {write_file(job, "report.html",
+                       report_html({job.run, job.options, job.survey, job.score, job.thalweg, texts_of_stages(job),
+                                    text_if_there(job.file.parent_path() / "survey" / "survey.json"), job.file,
+                                    &job.hazard, job.budget ? &*job.budget : nullptr}))};
+  }
+};
+
 }  // namespace
+
+std::shared_ptr<Writer> report_writer() { return std::make_shared<ReportWriter>(); }
 
 Window shown_window(const ReportInput& input) {
   const auto& grid = input.run.maps.grid;

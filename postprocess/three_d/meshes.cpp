@@ -9,7 +9,6 @@
 #include "common/gis/crs.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/score/thalweg.hpp"
-#include "postprocess/three_d/share_among_cells.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -56,6 +55,21 @@ std::vector<float> at_vertices(const CellMesh& made, const std::vector<double>& 
   at.reserve(made.cells.size());
   for (const std::size_t cell : made.cells) at.push_back(static_cast<float>(values[cell]));
   return at;
+}
+
+/// Calls add(cell, weight) for the four cells around the place, bilinear; the weights sum to 1, beyond the outermost
+/// centres too.
+template <class Add>
+void share_among_cells(const MapGrid& grid, double x, double y, const Add& add) {
+  const double u = std::clamp((x - grid.west) / grid.cell - 0.5, 0.0, grid.columns - 1.0),
+               v = std::clamp((y - grid.south) / grid.cell - 0.5, 0.0, grid.rows - 1.0);
+  const int column = static_cast<int>(u), row = static_cast<int>(v);
+  const double fu = u - column, fv = v - row;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int dx = corner & 1, dy = corner >> 1;
+    const double weight = (dx != 0 ? fu : 1 - fu) * (dy != 0 ? fv : 1 - fv);
+    if (weight > 0) add(grid.index(column + dx, row + dy), weight);
+  }
 }
 
 }  // namespace

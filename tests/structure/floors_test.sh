@@ -20,8 +20,8 @@ floors() {
         budget .
       ;;
     postprocess)
-      printf '%s\n' options survey fields hazard 'score maps' budget 'picture three_d' report 'ensemble compare' \
-        slides .
+      printf '%s\n' options survey fields hazard score budget writers maps 'picture three_d' report \
+        'ensemble compare' slides .
       ;;
   esac
 }

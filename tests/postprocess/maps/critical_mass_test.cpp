@@ -12,7 +12,7 @@
 #include "common/gis/read_raster.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/gis.hpp"
-#include "postprocess/maps/outlines.hpp"
+#include "postprocess/writers/job.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -56,14 +56,14 @@ TEST(CriticalMass, leaves_no_outline_and_no_surface_in_other_runs) {
   const test::Scratch scratch;
   const auto run = test::small_run();
   for (const OutlineLayer& layer : map_outlines(run, {}, {})) EXPECT_NE(layer.name, "critical");
-  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), run), {run, {}, {}});
+  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), run), {.run = run});
   EXPECT_FALSE(std::filesystem::exists(scratch / "sliding_surface.tif"));
 }
 
 TEST(CriticalMass, lies_on_a_surface_as_far_below_the_ground_as_it_is_thick) {
   const test::Scratch scratch;
   const Slab slab;
-  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), slab.run), {slab.run, {}, {}});
+  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), slab.run), {.run = slab.run});
   const Raster surface = read_raster(scratch / "sliding_surface.tif");
   const MapGrid& grid = slab.run.maps.grid;
   int under = 0;
@@ -86,7 +86,7 @@ TEST(CriticalMass, is_an_outline_of_its_area_to_other_tools) {
   const Slab slab;
   Options options;
   options.deposit_threshold = 2;
-  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), slab.run), {slab.run, options, {}});
+  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), slab.run), {.run = slab.run, .options = options});
   const auto said = test::output_of("/usr/bin/python3 -c \"from osgeo import ogr; d = ogr.Open('" +
                                     (scratch / "outlines.gpkg").string() +
                                     "'); l = d.GetLayerByName('critical'); print([(f.GetGeometryRef().IsValid(), "

@@ -13,7 +13,7 @@
 
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/maps/geotiff.hpp"
-#include "postprocess/maps/outlines.hpp"
+#include "postprocess/writers/job.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -114,11 +114,10 @@ TEST(Outlines, of_the_survey_are_its_own_polygons_where_it_has_them) {
 class ForGis : public ::testing::Test {
  protected:
   ForGis() : maps_(write_geotiffs(scratch_.folder(), run_)) {
-    files_ = write_gis(scratch_.folder(), maps_, {run_, options_, {}});
+    files_ = write_gis(scratch_.folder(), maps_, {.run = run_});
   }
   test::Scratch scratch_;
   const talus::Run run_ = small_run();
-  const Options options_;
   std::vector<fs::path> maps_, files_;
 };
 

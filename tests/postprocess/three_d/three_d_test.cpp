@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The folder 3d/ as a whole: what is written, what is refused, what is removed.
+// The folder 3d/ as a whole: files written, requests refused.
 #include "postprocess/three_d/three_d.hpp"
 
 #include <gtest/gtest.h>
-
-#include <fstream>
 
 #include "common/error.hpp"
 #include "tests/postprocess/scene.hpp"
@@ -43,14 +41,6 @@ TEST_F(ThreeD, writes_what_is_asked_for_and_names_what_to_open) {
 TEST_F(ThreeD, writes_the_ground_and_the_surface_unless_told_otherwise) {
   EXPECT_EQ(written({}), (std::vector<std::string>{"terrain.vtp", "surface.pvd", "run.pvd"}));
   EXPECT_TRUE(written({.surface = false, .terrain = false}).empty());
-}
-
-TEST_F(ThreeD, removes_what_an_earlier_run_left_and_nothing_else) {
-  written(all_of_it);
-  std::ofstream(folder_ / "mine.pvsm") << "a state of ParaView";
-  remove_three_d(folder_);
-  EXPECT_EQ(test::names_in(folder_), (std::vector<std::string>{"mine.pvsm"}));
-  remove_three_d(scratch_ / "none");
 }
 
 TEST_F(ThreeD, says_its_size_beforehand_within_a_factor_of_four) {

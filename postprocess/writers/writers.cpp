@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <ranges>
+#include <system_error>
+
+#include "common/stage/stage.hpp"
+#include "postprocess/writers/job.hpp"
+
+namespace talus::postprocess {
+namespace fs = std::filesystem;
+namespace {
+
+void remove_matching(const fs::path& out, const std::string& pattern) {
+  const fs::path folder = (out / pattern).parent_path();
+  std::error_code none_there;
+  Files old;
+  for (const auto& entry : fs::directory_iterator(folder, none_there))
+    if (entry.is_regular_file() && matches({pattern}, fs::relative(entry.path(), out, none_there).generic_string()))
+      old.push_back(entry.path());
+  for (const fs::path& file : old) fs::remove(file, none_there);
+  if (folder != out) fs::remove(folder, none_there);  // only an empty one
+}
+
+}  // namespace
+
+bool matches(const std::vector<std::string>& patterns, const std::string& path) {
+  return std::ranges::any_of(patterns, [&](const std::string& pattern) {
+    return ::fnmatch(pattern.c_str(), path.c_str(), FNM_PATHNAME) == 0;
+  });
+}
+
+Writers::Writers() : all_(all_writers()) {}
+
+void Writers::describe(recipe::Visitor& v) {
+  for (const auto& writer : all_) writer->describe(v);
+}
+
+void Writers::check(const Job& job) const {
+  for (const auto& writer : all_)
+    if (writer->wanted(job)) writer->check(job);
+}
+
+void Writers::remove_outdated(const fs::path& out) const {
+  for (const auto& writer : std::views::reverse(all_))
+    for (const std::string& pattern : writer->outdated()) remove_matching(out, pattern);
+}
+
+Files Writers::write(const Job& job) const {
+  Files files;
+  for (const auto& writer : all_) {
+    if (!writer->wanted(job)) continue;
+    stop_if_interrupted("writing " + writer->name());
+    const Files written = writer->write(job);
+    files.insert(files.end(), written.begin(), written.end());
+  }
+  return files;
+}
+
+fs::path write_file(const Job& job, const std::string& name, const std::string& bytes) {
+  stop_if_interrupted("writing " + name);
+  fs::path file = job.out / name;
+  write_text(file, bytes);
+  return file;
+}
+
+fs::path folder_of(const Job& job, const std::string& name) {
+  fs::path folder = job.out / name;
+  make_folder(folder);
+  return folder;
+}
+
+}  // namespace talus::postprocess

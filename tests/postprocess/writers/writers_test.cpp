@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of writers: names, files of a whole run, files of an earlier run.
+#include "postprocess/options/writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "postprocess/postprocess.hpp"
+#include "tests/postprocess/scene.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Outputs : public ::testing::Test {
+ protected:
+  Outputs() { fs::create_directories(out_); }
+
+  /// Runs the stage on `run` with more keys of [postprocess].
+  void write(const talus::Run& run, const std::string& keys) {
+    test::write_run(out_ / "run.h5", run);
+    StageContext context{
+        .recipe = recipe::Recipe(scratch_.write("recipe.toml", "[scene]\nname = \"small\"\n[postprocess]\n" + keys)),
+        .out = out_,
+        .command_line = "test"};
+    postprocess::run(context);
+  }
+  /// Files below OUT, without run.h5.
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(out_))
+      if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), out_).generic_string());
+    names.erase("run.h5");
+    return names;
+  }
+  static bool has_writer(const std::string& file) {
+    const auto all = all_writers();
+    return std::any_of(all.begin(), all.end(), [&](const auto& writer) { return matches(writer->names(), file); });
+  }
+
+  /// A run with every optional output.
+  talus::Run everything() const {
+    talus::Run run = test::small_run();
+    run.maps.deposit_of = {{"north scar", run.maps.deposit_thickness}};
+    run.maps.critical_thickness = run.maps.initial_thickness;
+    run.history.columns = {{"time_s", "s", "", "", {0, 20}},
+                           {"gauge_bridge_thickness_m", "m", "thickness", "gauge bridge", {0, 1}}};
+    return run;
+  }
+
+  test::Scratch scratch_;
+  const fs::path out_ = scratch_ / "out";
+  const std::string all_keys_ =
+      "avaframe = true\n[postprocess.three_d]\npoints = true\n[postprocess.intensity]\nguideline = \"swiss-flood\"\n"
+      "[postprocess.reach_cone]\nangle_deg = 20.0\n";
+};
+
+TEST_F(Outputs, have_unique_names_and_files_of_their_own) {
+  std::set<std::string> names, patterns;
+  for (const auto& writer : all_writers()) {
+    EXPECT_TRUE(names.insert(writer->name()).second) << writer->name();
+    EXPECT_FALSE(writer->names().empty()) << writer->name();
+    for (const std::string& pattern : writer->names()) EXPECT_TRUE(patterns.insert(pattern).second) << pattern;
+  }
+}
+
+TEST_F(Outputs, of_a_run_are_all_named_by_a_writer) {
+  write(everything(), all_keys_);
+  const auto written = files();
+  for (const char* name : {"maps/intensity.tif", "maps/reach.gpkg", "maps/deposit_thickness_north-scar.qml",
+                           "maps/sliding_surface.tif", "gauges.csv", "3d/points/points.0000.vtp", "score.json"})
+    EXPECT_TRUE(written.contains(name)) << name;
+  for (const std::string& file : written) EXPECT_TRUE(has_writer(file)) << "no writer names " << file;
+}
+
+TEST_F(Outputs, of_an_earlier_run_that_are_no_longer_wanted_are_deleted) {
+  write(everything(), all_keys_);
+  scratch_.write("out/3d/mine.pvsm", "a state of ParaView");
+  fs::create_directories(out_ / "3d" / "volumes");
+  scratch_.write("out/3d/volumes/flow.0000.vdb", "of an earlier version");
+  write(test::small_run(), "report = false\n[postprocess.three_d]\nsurface = false\nterrain = false\n");
+  const auto left = files();
+  for (const char* name : {"report.html", "gauges.csv", "maps/intensity.tif", "maps/reach_cone.qml"})
+    EXPECT_FALSE(left.contains(name)) << name;
+  EXPECT_FALSE(fs::exists(out_ / "maps" / "avaframe"));
+  EXPECT_EQ(test::names_in(out_ / "3d"), std::vector<std::string>{"mine.pvsm"});
+  EXPECT_TRUE(left.contains("score.json"));
+}
+
+TEST_F(Outputs, patterns_do_not_reach_into_folders) {
+  EXPECT_TRUE(matches({"maps/*.qgs"}, "maps/small.qgs"));
+  EXPECT_FALSE(matches({"maps/*.qgs"}, "maps/old/small.qgs"));
+  EXPECT_FALSE(matches({"score.json"}, "maps/score.json"));
+}
+
+}  // namespace
+}  // namespace talus::postprocess
