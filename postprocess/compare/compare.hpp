@@ -31,4 +31,15 @@ std::string comparison_html(const ComparedRun& first, const ComparedRun& second,
 /// context.out/comparison.html. Throws DataError.
 void compare(StageContext& context, const std::filesystem::path& other);
 
+/// Lower limits of the sizes that are told apart [m]: 1, 2, 5, 10, 20 and 50 fiftieths of the largest, rounded.
+std::vector<double> difference_limits(const DepositDifference& found);
+
+/// A round step of an axis that divides `range` into four to ten parts; `range` above 0.
+double axis_step(double range);
+
+/// Charts (SVG, as markup of a page) of what both histories or one of them holds, from all of their records: kinetic
+/// energy, largest speed, volume in motion, and what was measured at places. The first run solid, the second dashed.
+/// Empty where neither has a history.
+std::string history_charts(const ComparedRun& first, const ComparedRun& second);
+
 }  // namespace talus::postprocess

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/compare/curves.hpp"
+#include "postprocess/compare/compare.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,6 @@
 
 #include "common/map/isolines.hpp"
 #include "postprocess/compare/compare.hpp"
-#include "postprocess/compare/difference_classes.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/picture/layers.hpp"
 #include "postprocess/picture/places.hpp"
@@ -43,13 +42,6 @@ Colour colour_of(double difference, const std::vector<double>& limits) {
   return difference_colour(difference > 0, static_cast<std::size_t>(index), limits.size());
 }
 
-std::uint32_t pixel_of(const Colour& c, double shade) {
-  const auto byte = [&](double v) {
-    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(v * shade, 0.0, 1.0)));
-  };
-  return byte(c.r) << 16U | byte(c.g) << 8U | byte(c.b);
-}
-
 void draw_difference(Canvas& canvas, const View& view, const RunMaps& first, const DepositDifference& found) {
   const MapGrid& grid = first.grid;
   const auto shades = hillshade(grid, first.before);
@@ -65,7 +57,7 @@ void draw_difference(Canvas& canvas, const View& view, const RunMaps& first, con
       if (std::isnan(first.before[grid.index(column, row)])) continue;
       const double shade = 0.55 + 0.45 * sample(grid, shades, x, y, 1);
       pixels[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)] =
-          pixel_of(colour_of(found.difference.at(column, row), limits), shade);
+          pixel_of(scaled(colour_of(found.difference.at(column, row), limits), shade));
     }
   }
   canvas.image(static_cast<int>(view.box.x), static_cast<int>(view.box.y), width, height, pixels);
@@ -73,8 +65,7 @@ void draw_difference(Canvas& canvas, const View& view, const RunMaps& first, con
 
 void draw_outline(Canvas& canvas, const View& view, const RunMaps& maps, double threshold, const Pen& pen) {
   for (const Polyline& line : isolines(maps.grid, maps.deposit_thickness, threshold, AtEdge::close)) {
-    Pixels points;
-    for (const auto& [x, y] : line) points.push_back(view.pixel(x, y));
+    const Pixels points = on_canvas(view, line);
     if (pen.dashes.empty()) canvas.line(points, {{1, 1, 1}, pen.width + 2.5, {}, 0.8});  // dashes lie on the other line
     canvas.line(points, pen);
   }

@@ -12,8 +12,6 @@
 #include "common/recipe/shown_paths.hpp"
 #include "common/recipe/used.hpp"
 #include "postprocess/compare/compare.hpp"
-#include "postprocess/compare/curves.hpp"
-#include "postprocess/compare/difference_classes.hpp"
 #include "postprocess/report/filled_page.hpp"
 #include "postprocess/report/pack.hpp"
 

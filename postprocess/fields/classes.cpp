@@ -29,6 +29,14 @@ std::vector<double> class_limits(const std::vector<double>& given, double thicke
   return fitting_limits({0.1, 0.5, 1, 2, 5, 10, 25, 50, 100, 200, 500}, thickest, 1);
 }
 
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double v : values) {
+    if (v > most) most = v;  // NaN is not
+  }
+  return most;
+}
+
 int class_of(double value, const std::vector<double>& limits) {
   if (std::isnan(value)) return -1;
   return static_cast<int>(std::upper_bound(limits.begin(), limits.end(), value) - limits.begin()) - 1;

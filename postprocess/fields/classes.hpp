@@ -18,6 +18,9 @@ std::vector<double> fitting_limits(const std::vector<double>& ladder, double lar
 /// Lower limits of thickness classes [m]: as given; if none are, of 0.1|0.5|1|2|5|10|25|50|100|200|500 those that fit.
 std::vector<double> class_limits(const std::vector<double>& given, double thickest);
 
+/// Largest of the positive values, NaN left out; 0 if there is none.
+double largest(const std::vector<double>& values);
+
 /// Index of the class that holds the value; -1 below the first limit or for NaN.
 int class_of(double value, const std::vector<double>& limits);
 

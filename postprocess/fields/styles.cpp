@@ -2,23 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/fields/styles.hpp"
 
-#include <algorithm>
-
 #include "postprocess/fields/classes.hpp"
 #include "postprocess/fields/fields.hpp"
 
 namespace talus::postprocess {
-namespace {
-
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (const double v : values) {
-    if (v > most) most = v;  // NaN is not
-  }
-  return most;
-}
-
-}  // namespace
 
 std::vector<double> pressure_limits(const std::vector<double>& values) {
   return fitting_limits({1, 3, 5, 10, 100, 1000, 10000}, largest(values), 4, 7);

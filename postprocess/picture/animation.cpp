@@ -79,9 +79,7 @@ std::string encoding(Animation animation) {
 
 double thickest(const Run& run) {
   double most = 0;
-  for (std::size_t i = 0; i < run.frames.time.size(); ++i)
-    for (const double h : flow_thickness(run, i))
-      if (h > most) most = h;
+  for (std::size_t i = 0; i < run.frames.time.size(); ++i) most = std::max(most, largest(flow_thickness(run, i)));
   return most;
 }
 

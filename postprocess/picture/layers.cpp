@@ -21,19 +21,6 @@ namespace {
 constexpr Colour white{1, 1, 1};
 constexpr Colour beyond_domain{0.93, 0.94, 0.95};
 
-std::uint32_t packed(const Colour& c) {
-  const auto byte = [](double v) { return static_cast<std::uint32_t>(std::lround(255 * std::clamp(v, 0.0, 1.0))); };
-  return byte(c.r) << 16U | byte(c.g) << 8U | byte(c.b);
-}
-
-Colour scaled(const Colour& c, double factor) { return {c.r * factor, c.g * factor, c.b * factor}; }
-
-Pixels on_canvas(const View& view, const Polyline& line) {
-  Pixels points;
-  for (const auto& [x, y] : line) points.push_back(view.pixel(x, y));
-  return points;
-}
-
 double length(const Pixels& points) {
   double sum = 0;
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -109,6 +96,19 @@ double quantile(std::vector<double>& all, double part) {
 
 }  // namespace
 
+Colour scaled(const Colour& c, double factor) { return {c.r * factor, c.g * factor, c.b * factor}; }
+
+std::uint32_t pixel_of(const Colour& c) {
+  const auto byte = [](double v) { return static_cast<std::uint32_t>(std::lround(255 * std::clamp(v, 0.0, 1.0))); };
+  return byte(c.r) << 16U | byte(c.g) << 8U | byte(c.b);
+}
+
+Pixels on_canvas(const View& view, const Polyline& line) {
+  Pixels points;
+  for (const auto& [x, y] : line) points.push_back(view.pixel(x, y));
+  return points;
+}
+
 std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons) {
   std::vector<Polyline> lines;
   for (const auto& polygon : polygons) {
@@ -143,11 +143,11 @@ void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const st
       const int place = class_of(sample(maps.grid, maps.deposit_thickness, x, y, 0), limits);
       const double bright = std::isnan(shade) ? 0.5 : shade;
       if (place >= 0)
-        pixels.push_back(packed(scaled(colours[static_cast<std::size_t>(place)], 0.87 + 0.18 * bright)));
+        pixels.push_back(pixel_of(scaled(colours[static_cast<std::size_t>(place)], 0.87 + 0.18 * bright)));
       else if (std::isnan(shade))
-        pixels.push_back(packed(beyond_domain));
+        pixels.push_back(pixel_of(beyond_domain));
       else
-        pixels.push_back(packed(scaled({0.985, 0.99, 1.0}, 0.64 + 0.34 * bright)));
+        pixels.push_back(pixel_of(scaled({0.985, 0.99, 1.0}, 0.64 + 0.34 * bright)));
     }
   }
   canvas.image(static_cast<int>(view.box.x), static_cast<int>(view.box.y), width, height, pixels);

@@ -13,6 +13,15 @@
 
 namespace talus::postprocess {
 
+/// A colour times a brightness.
+Colour scaled(const Colour& c, double factor);
+
+/// 0xRRGGBB.
+std::uint32_t pixel_of(const Colour& c);
+
+/// A line in map coordinates, in pixels.
+Pixels on_canvas(const View& view, const Polyline& line);
+
 /// All rings of the polygons as closed lines.
 std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons);
 

@@ -25,14 +25,6 @@ Box map_box(const Window& window) {
   return {left, top, std::round(window.width() * scale), std::round(window.height() * scale)};
 }
 
-double thickest(const std::vector<double>& thickness) {
-  double most = 0;
-  for (const double h : thickness) {
-    if (h > most) most = h;
-  }
-  return most;
-}
-
 /// The part of the maps that is drawn; at an instant the flow takes the deposit's place, after a search what fails
 /// first.
 RunMaps shown_maps(const PictureInput& input, const Window& window) {
@@ -65,7 +57,7 @@ Canvas draw_map(const PictureInput& input) {
   const View view{window, map_box(window)};
   const auto maps = shown_maps(input, window);
   const auto limits =
-      class_limits(input.options.classes, input.instant ? input.instant->thickest : thickest(maps.deposit_thickness));
+      class_limits(input.options.classes, input.instant ? input.instant->thickest : largest(maps.deposit_thickness));
   const ContourLevels contours = contour_levels(view, maps);
   const double width = left + view.box.width + gap + sidebar + right;
   const double height = top + std::max(view.box.height, least_height) + bottom;

@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "postprocess/budget/budget_table.hpp"
+#include "postprocess/fields/classes.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/hazard/hazard.hpp"
 #include "postprocess/picture/hillshade.hpp"
-#include "postprocess/report/limits.hpp"
 #include "postprocess/report/pack.hpp"
 #include "postprocess/report/parts.hpp"
 
@@ -21,13 +21,6 @@ namespace {
 
 // What a map may hold before its cells are merged: pages stay below some ten megabytes.
 constexpr std::size_t cells_of_a_map = 300'000, cells_of_all_frames = 9'000'000;
-
-double largest(const std::vector<double>& values) {
-  double top = 0;
-  for (const double v : values)
-    if (v > top) top = v;
-  return top;
-}
 
 /// A class: values from `from` up to `to`, null without end.
 Json class_json(double from, double to, const Colour& colour, const std::string& label) {
@@ -290,6 +283,30 @@ Json ground_json(const ReportInput& input, const Window& window, int& coarsest) 
   return {{"grid", grid_json(elevation.grid)},
           {"elevation", packed(elevation.values)},
           {"shade", packed(hillshade(elevation.grid, elevation.values))}};
+}
+
+namespace {
+
+/// 1, 2 or 5 times a power of ten that is at least `value`.
+double round_above(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= value * (1 - 1e-12)) return step * power;
+  }
+  return 10 * power;
+}
+
+}  // namespace
+
+std::vector<double> difference_limits(const std::vector<double>& differences) {
+  std::vector<double> sizes;
+  for (const double d : differences)
+    if (std::abs(d) > 0) sizes.push_back(std::abs(d));
+  if (sizes.empty()) return {0.2, 0.5, 1};
+  const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() - 1 - sizes.size() / 10);
+  std::nth_element(sizes.begin(), place, sizes.end());
+  const double scale = round_above(std::max(*place, 0.1));
+  return {scale / 5, scale / 2, scale};
 }
 
 }  // namespace talus::postprocess

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "postprocess/fields/window.hpp"
 #include "postprocess/report/report.hpp"
@@ -52,5 +53,9 @@ Json volumes_json(const Run& run, double deposit_threshold);
 
 /// What each stage used: facts, keys, defaults.
 Json stages_json(const std::vector<StageText>& stages);
+
+/// Rising positive limits of a symmetric scale [m]: 1/5, 1/2 and the whole of a round number that nine in ten
+/// differences do not exceed. NaN and 0 are left out.
+std::vector<double> difference_limits(const std::vector<double>& differences);
 
 }  // namespace talus::postprocess

@@ -1,16 +1,23 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables of the report: scores, volumes read both ways, what each stage used.
+// Tables of the report: scores, volumes, used recipes, buildings, places, error budget.
+#include <algorithm>
 #include <cmath>
 
 #include "common/map/slope.hpp"
 #include "common/recipe/used.hpp"
 #include "common/run/mobility.hpp"
+#include "common/run/places.hpp"
+#include "common/stage/acceptance.hpp"
+#include "postprocess/budget/budget_table.hpp"
 #include "postprocess/fields/release.hpp"
+#include "postprocess/hazard/hazard.hpp"
 #include "postprocess/report/parts.hpp"
 
 namespace talus::postprocess {
 namespace {
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 /// A thickness map read both ways. Vertical is how Talus means it; the other column is what the same numbers would be,
 /// were they measured normal to the slope.
@@ -91,6 +98,118 @@ Json stages_json(const std::vector<StageText>& stages) {
     list.push_back(std::move(json));
   }
   return list;
+}
+
+namespace {
+
+Json building_json(const Building& b) {
+  return {{"name", b.name},
+          {"arrival", finite_or_null(b.arrival)},
+          {"thickness", {b.thickness.largest, b.thickness.p99}},
+          {"speed", {b.speed.largest, b.speed.p99}},
+          {"pressure", {b.pressure.largest, b.pressure.p99}},
+          {"width", b.width},
+          {"force", b.force},
+          {"force_from", source_word(b.source)}};
+}
+
+}  // namespace
+
+Json hazard_json(const ReportInput& input) {
+  Json json{{"buildings", Json::array()}};
+  if (input.hazard != nullptr)
+    for (const Building& b : input.hazard->buildings) json["buildings"].push_back(building_json(b));
+  return json;
+}
+
+namespace {
+
+/// Of every quantity measured at a place its value farthest from zero, and when that was.
+Json extremes_at(const std::string& place, const RunHistory& history) {
+  auto list = Json::array();
+  const HistoryColumn* time = history.find("time_s");
+  for (const HistoryColumn& column : history.columns) {
+    if (column.place != place || time == nullptr) continue;
+    const auto farther = [](double a, double b) { return !std::isfinite(a) || std::abs(a) < std::abs(b); };
+    const auto found = std::max_element(column.values.begin(), column.values.end(), farther);
+    if (found == column.values.end() || !std::isfinite(*found)) continue;
+    list.push_back({{"quantity", column.quantity},
+                    {"unit", column.unit},
+                    {"value", *found},
+                    {"time", time->values[static_cast<std::size_t>(found - column.values.begin())]}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Json places_json(const ReportInput& input) {
+  auto list = Json::array();
+  const Window window = shown_window(input);
+  for (const MapPlace& place : places_in(input.run.summary.provenance)) {
+    auto rings = Json::array();
+    for (const auto& ring : place.rings) {
+      auto flat = Json::array();
+      for (const auto& [x, y] : ring) {
+        flat.push_back(std::round(100 * (x - window.west)) / 100);
+        flat.push_back(std::round(100 * (y - window.south)) / 100);
+      }
+      rings.push_back(std::move(flat));
+    }
+    const auto space = place.words.find(' ');
+    list.push_back({{"kind", place.words.substr(0, space)},
+                    {"name", space == std::string::npos ? place.words : place.words.substr(space + 1)},
+                    {"rings", std::move(rings)},
+                    {"measured", extremes_at(place.words, input.run.history)}});
+  }
+  return list;
+}
+
+namespace {
+
+Json budget_line_json(const BudgetLine& line) {
+  Json json{{"name", line.run.name},
+            {"kind", kind_name(line.row->kind)},
+            {"title", line.row->title},
+            {"words", line.run.words},
+            {"done", line.run.state == BudgetState::done},
+            {"failed", line.run.state == BudgetState::failed},
+            {"reason", line.run.reason},
+            {"values", line.run.values},
+            {"accepted", accepted_line(line.run.accepted)},
+            {"warnings", line.run.warnings},
+            {"elsewhere", finite_or_null(line.elsewhere)},
+            {"overlap", finite_or_null(line.overlap)},
+            {"run_out", finite_or_null(line.numbers.run_out)},
+            {"speed", finite_or_null(line.numbers.largest_speed)},
+            {"volume", finite_or_null(line.numbers.volume)},
+            {"steps", finite_or_null(line.numbers.steps)},
+            {"seconds", finite_or_null(line.numbers.wall_time)}};
+  json["scores"] = Json::array();
+  for (const double score : line.scores) json["scores"].push_back(finite_or_null(score));
+  return json;
+}
+
+}  // namespace
+
+Json budget_json(const ReportInput& input) {
+  if (input.budget == nullptr) return nullptr;
+  const BudgetTable& table = *input.budget;
+  Json json{{"run_out", finite_or_null(table.own.run_out)},
+            {"speed", finite_or_null(table.own.largest_speed)},
+            {"volume", finite_or_null(table.own.volume)},
+            {"steps", finite_or_null(table.own.steps)},
+            {"seconds", finite_or_null(table.own.wall_time)}};
+  json["scores"] = Json::array();
+  for (const BudgetScore& score : table.scores)
+    json["scores"].push_back({{"key", score.key},
+                              {"label", score.label},
+                              {"unit", score.unit},
+                              {"decimals", score.decimals},
+                              {"own", finite_or_null(score.own)}});
+  json["lines"] = Json::array();
+  for (const BudgetLine& line : table.lines) json["lines"].push_back(budget_line_json(line));
+  return json;
 }
 
 }  // namespace talus::postprocess

@@ -7,10 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "postprocess/fields/classes.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/score/contingency.hpp"
-#include "postprocess/score/ranking.hpp"
-#include "postprocess/score/residual.hpp"
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {
@@ -60,9 +59,7 @@ void thickness(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet
   sheet.number("deposit_volume_ratio", "deposit volume, simulated / " + adjective, "",
                volume_under(simulated.deposit, survey.grid.cell) / volume, 3,
                "the " + std::string(survey.words().noun) + " holds no deposit");
-  double thickest = 0;
-  for (const double h : survey.deposit) thickest = h > thickest ? h : thickest;
-  sheet.number("survey_max_deposit_thickness_m", "thickest " + adjective + " deposit", "m", thickest, 2);
+  sheet.number("survey_max_deposit_thickness_m", "thickest " + adjective + " deposit", "m", largest(survey.deposit), 2);
 }
 
 void centre_offset(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
+#include "common/map/raster.hpp"
 #include "common/map/statistics.hpp"
 
 namespace talus::postprocess {
@@ -73,6 +75,46 @@ ThicknessError thickness_error(const std::vector<double>& simulated, const std::
   const auto count = static_cast<double>(differences.size());
   return {std::sqrt(ratio(square, count)), ratio(sum, count), ratio(absolute, count), median(differences),
           nmad(differences)};
+}
+
+double auroc(const std::vector<double>& simulated, const std::vector<double>& surveyed, double threshold) {
+  std::vector<std::pair<double, bool>> cells;
+  for (std::size_t i = 0; i < simulated.size(); ++i) {
+    if (!std::isnan(simulated[i]) && !std::isnan(surveyed[i]))
+      cells.emplace_back(simulated[i], surveyed[i] > threshold);
+  }
+  std::sort(cells.begin(), cells.end());
+  double wins = 0, yes = 0, no = 0;
+  for (std::size_t start = 0; start < cells.size();) {
+    double yes_here = 0, no_here = 0;  // of one value
+    std::size_t end = start;
+    for (; end < cells.size() && cells[end].first == cells[start].first; ++end)
+      (cells[end].second ? yes_here : no_here) += 1;
+    wins += yes_here * (no + 0.5 * no_here);
+    yes += yes_here;
+    no += no_here;
+    start = end;
+  }
+  return yes > 0 && no > 0 ? wins / (yes * no) : std::numeric_limits<double>::quiet_NaN();
+}
+
+Residual residual_of(const std::vector<double>& simulated, const std::vector<double>& surveyed,
+                     const std::vector<double>& sigma, const std::vector<char>& counts) {
+  constexpr double normal_95 = 1.96;
+  std::vector<double> residuals;
+  double within = 0, square = 0;
+  for (std::size_t i = 0; i < simulated.size(); ++i) {
+    const double r = (simulated[i] - surveyed[i]) / sigma[i];
+    if (!counts[i] || !(sigma[i] > 0) || std::isnan(r)) continue;
+    residuals.push_back(r);
+    within += std::abs(r) <= normal_95 ? 1 : 0;
+    square += r * r;
+  }
+  if (residuals.empty()) {
+    return {0, nan, nan, nan};
+  }
+  const auto count = static_cast<double>(residuals.size());
+  return {residuals.size(), median(residuals), within / count, square / count};
 }
 
 }  // namespace talus::postprocess

@@ -3,6 +3,7 @@
 // Agreement of two maps of yes and no.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace talus::postprocess {
@@ -48,5 +49,23 @@ struct ThicknessError {
 /// Errors of a simulated thickness against a surveyed one.
 ThicknessError thickness_error(const std::vector<double>& simulated, const std::vector<double>& surveyed,
                                double threshold);
+
+/// Area under the receiver operating characteristic curve: the chance that a cell the survey says yes to (above
+/// `threshold`) has the larger simulated value than one it says no to, ties counting half (Mann and Whitney 1947;
+/// Fawcett 2006). 1 = perfect, 0.5 = chance. Over all thresholds of the simulation, unlike that of r.avaflow, which
+/// takes one. Cells with NaN on either side are left out; NaN where the survey says the same everywhere.
+double auroc(const std::vector<double>& simulated, const std::vector<double>& surveyed, double threshold);
+
+/// The normalised residual r = (simulated - surveyed) / sigma over some cells. NaN where there is no cell.
+struct Residual {
+  std::size_t cells = 0;
+  double median = 0;
+  double within = 0;       ///< share of the cells with |r| <= 1.96; 0.95 where the survey's error is all there is
+  double chi_squared = 0;  ///< mean of r^2: 1 where the survey's error is all there is (no parameter is fitted)
+};
+
+/// Over the cells where `counts` holds and sigma is positive; a NaN in any of the three leaves a cell out.
+Residual residual_of(const std::vector<double>& simulated, const std::vector<double>& surveyed,
+                     const std::vector<double>& sigma, const std::vector<char>& counts);
 
 }  // namespace talus::postprocess

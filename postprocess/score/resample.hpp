@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "common/map/raster.hpp"
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {
@@ -20,5 +21,10 @@ struct Resampled {
 /// deposit count that touch a deposit of the survey: noise far away is no run-out. The survey holds one such error
 /// already, so the mean of the draws lies a little below a score that errors can only lower.
 Resampled resample(const Scored& scored, const OnSurveyGrid& simulated);
+
+/// `values` without the patches (cells above `threshold`, joined by eight neighbours) that hold no cell of `seeds`:
+/// such cells become 0.
+std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,
+                                 const std::vector<char>& seeds);
 
 }  // namespace talus::postprocess

@@ -12,7 +12,6 @@
 #include "common/gis/polygons.hpp"
 #include "common/map/bilinear.hpp"
 #include "common/run/mobility.hpp"
-#include "postprocess/score/flow_path.hpp"
 #include "postprocess/score/polyline.hpp"
 
 namespace talus::postprocess {
@@ -187,26 +186,6 @@ Series front_by_arrival(const RunMaps& maps, const Thalweg& thalweg, double step
     front.value.push_back(last.second);
   }
   return front;
-}
-
-std::vector<double> cross_section_maxima(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
-                                         double half_width) {
-  std::vector<double> maxima(thalweg.line.size(), nan);
-  if (maxima.size() < 2) return maxima;
-  const double step = thalweg.length() / static_cast<double>(maxima.size() - 1);
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const double value = values[grid.index(column, row)];
-      if (std::isnan(value)) continue;
-      const auto place = project(thalweg, grid.x(column), grid.y(row));
-      const double station = std::round(place.distance / step);
-      if (!(std::abs(place.offset) <= half_width && station >= 0 && station < static_cast<double>(maxima.size())))
-        continue;
-      double& top = maxima[static_cast<std::size_t>(station)];
-      if (!(value <= top)) top = value;
-    }
-  }
-  return maxima;
 }
 
 }  // namespace talus::postprocess

@@ -79,9 +79,4 @@ struct Series {
 /// row for each advance by at least `step` [m], the first and the last among them. Empty where nothing arrived.
 Series front_by_arrival(const RunMaps& maps, const Thalweg& thalweg, double step);
 
-/// Largest value across the line at each of its vertices, over the cells nearest to it and within `half_width` [m] on
-/// either side (Fischer 2013, AIMEC: maxima over cross sections); NaN where no cell lies there.
-std::vector<double> cross_section_maxima(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values,
-                                         double half_width);
-
 }  // namespace talus::postprocess

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Curves of a comparison: from all records, for what either run has.
-#include "postprocess/compare/curves.hpp"
+#include "postprocess/compare/compare.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "postprocess/compare/compare.hpp"
-#include "postprocess/compare/difference_classes.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {

@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "postprocess/report/limits.hpp"
 #include "postprocess/report/pack.hpp"
 #include "postprocess/report/page.hpp"
 #include "postprocess/report/parts.hpp"

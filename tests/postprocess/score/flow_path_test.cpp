@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/score/flow_path.hpp"
+#include "postprocess/score/polyline.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/score/patches.hpp"
+#include "postprocess/score/resample.hpp"
 
 #include <gtest/gtest.h>
 

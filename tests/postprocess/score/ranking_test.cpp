@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/score/ranking.hpp"
+#include "postprocess/score/contingency.hpp"
 
 #include <gtest/gtest.h>
 

@@ -142,15 +142,5 @@ TEST(Thalweg, follows_the_front_by_the_times_of_arrival) {
   EXPECT_EQ(front.value, (std::vector<double>{65, 85, 95})) << "the last one is there whatever the step";
 }
 
-TEST(Thalweg, finds_the_largest_value_across_itself) {
-  const MapGrid grid{.columns = 3, .rows = 3, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
-  const std::vector<double> values{1, 2, 3, 4, 5, nan, 9, 8, 0};
-  const auto thalweg = line_of({{5, 15}, {15, 15}, {25, 15}});
-  EXPECT_EQ(cross_section_maxima(thalweg, grid, values, 100), (std::vector<double>{9, 8, 3}));
-  const auto narrow = cross_section_maxima(thalweg, grid, values, 4);
-  EXPECT_EQ(narrow[1], 5);
-  EXPECT_TRUE(std::isnan(narrow[2]));
-}
-
 }  // namespace
 }  // namespace talus::postprocess
