@@ -69,7 +69,7 @@ struct MeasureLying {
   Real* lying;  ///< of the columns [kg]
 
   TALUS_HD void operator()(int c) const {
-    if (clock->halt != running) return;
+    if (clock->alarms.halt != running) return;
     const ColumnNodes at = ColumnNodes::find(grid, active, c);
     if (!at.in_domain()) return;
     lying[at.column] = matter_on_bed(grid, nodes, at).mass;
@@ -91,7 +91,7 @@ struct HoldColumns {
   Real* rise;  ///< see BedColumns; null where nobody asks
 
   TALUS_HD void operator()(int c) const {
-    if (clock->halt != running) return;
+    if (clock->alarms.halt != running) return;
     const ColumnNodes at = ColumnNodes::find(grid, active, c);
     if (!at.in_domain()) return;
     const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
@@ -116,7 +116,7 @@ struct HoldColumns {
     Vec3<Real> after = before - velocity;
     if (walls.count > 0) after = meet_walls(walls, at.i, at.j, k, after, false);
     nodes.add(n, after - before);
-    if (clock->keeps_budget) count_at_bed(*clock, clock->holding_loss, nodes.mass(n), before, after - before);
+    if (clock->budget.is_kept) count_at_bed(*clock, clock->budget.holding_loss, nodes.mass(n), before, after - before);
   }
 };
 
@@ -131,7 +131,7 @@ struct CountLanding {
   ColumnStep step;      ///< with a clock
 
   TALUS_HD void operator()(int c) const {
-    if (step.clock->halt != running) return;
+    if (step.clock->alarms.halt != running) return;
     const ColumnNodes at = ColumnNodes::find(grid, active, c);
     if (!at.in_domain()) return;
     const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
@@ -140,7 +140,7 @@ struct CountLanding {
     const Real weight = step.press(normal_of(sx, sy));
     const Real excess = pressed[at.column] / matter.mass - weight * static_cast<Real>(step.length());
     const Real mean = rise_from(matter.momentum, sx, sy) / matter.mass - excess / Real(2);
-    atomic_add(&step.clock->landing_loss, -static_cast<double>(matter.mass * excess * mean));
+    atomic_add(&step.clock->budget.landing_loss, -static_cast<double>(matter.mass * excess * mean));
   }
 };
 

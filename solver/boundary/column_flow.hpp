@@ -187,12 +187,12 @@ template <class Number>
 TALUS_HD void count_at_bed(Clock& clock, double& cause, Number mass, const Vec3<Number>& v,
                            const Vec3<Number>& change) {
   const double m = static_cast<double>(mass), loss = -m * static_cast<double>(dot(change, v + change * Number(0.5)));
-  atomic_add(&clock.bed_loss, loss);
+  atomic_add(&clock.budget.bed_loss, loss);
   atomic_add(&cause, loss);
-  atomic_add(&clock.transfer_loss, -loss);
-  atomic_add(&clock.reaction[0], m * static_cast<double>(change.x));
-  atomic_add(&clock.reaction[1], m * static_cast<double>(change.y));
-  atomic_add(&clock.reaction[2], m * static_cast<double>(change.z));
+  atomic_add(&clock.budget.transfer_loss, -loss);
+  atomic_add(&clock.budget.reaction[0], m * static_cast<double>(change.x));
+  atomic_add(&clock.budget.reaction[1], m * static_cast<double>(change.y));
+  atomic_add(&clock.budget.reaction[2], m * static_cast<double>(change.z));
 }
 
 /// The slip of a column over its bed as a whole: its mean speed, and its weight over what it covers.
@@ -251,7 +251,7 @@ struct MeasureCoefficients {
   ColumnStep step;
 
   TALUS_HD void operator()(int c) const {
-    if (step.clock && step.clock->halt != running) return;
+    if (step.clock && step.clock->alarms.halt != running) return;
     const ColumnNodes at = ColumnNodes::find(grid, active, c);
     if (!at.in_domain() || !(mass[at.column] > Number(0))) return;
     const Slip<Number> slip = column_slip(lying_matter(nodes, at), bed_under(grid, mass, at.i, at.j), step);

@@ -68,7 +68,7 @@ struct SlowColumns {
   /// The column number c; outside where it holds nothing.
   TALUS_HD Column locate(int c) const {
     Column at;
-    if (step.clock && step.clock->halt != running) return at;
+    if (step.clock && step.clock->alarms.halt != running) return at;
     at.nodes = ColumnNodes::find(grid, active, c);
     if (!at.nodes.in_domain()) return at;
     at.inside = columns.mass[at.nodes.column] > Number(0);
@@ -118,8 +118,8 @@ struct SlowColumns {
     const int n = at.nodes.node(k);
     const Vec3<Number> v = nodes.velocity(n), change = change_of(pass, v);
     nodes.add(n, change);
-    if (step.clock && step.clock->keeps_budget)
-      count_at_bed(*step.clock, step.clock->drag_loss, nodes.mass(n), v, change);
+    if (step.clock && step.clock->budget.is_kept)
+      count_at_bed(*step.clock, step.clock->budget.drag_loss, nodes.mass(n), v, change);
   }
 
  private:

@@ -68,7 +68,7 @@ struct BeginContacts {
   Real* yielding;       ///< of the nodes to all points: Q_i [1/kg], or shares in nodes that are not single
 
   TALUS_HD void operator()(int c) const {
-    if (clock && clock->halt != running) return;
+    if (clock && clock->alarms.halt != running) return;
     const Real mass = contacts.template mass_before<Shape>(grid, nodes, c),
                inverse = mass > Real(0) ? Real(1) / mass : Real(0);
     contacts.inverse_mass[c] = inverse;
@@ -101,7 +101,7 @@ struct SweepContacts {
   Vec3<Real>* given;
 
   TALUS_HD void operator()(int c) const {
-    if (clock && clock->halt != running) return;
+    if (clock && clock->alarms.halt != running) return;
     const double dt = clock ? clock->step_size : step;
     Vec3<Real> p{};
     if (contacts.inverse_mass[c] > Real(0)) {
@@ -138,7 +138,7 @@ struct TakeImpulses {
   const Clock* clock;
   Vec3<Real>* given;
   TALUS_HD void operator()(int n) const {
-    if (clock && clock->halt != running) return;
+    if (clock && clock->alarms.halt != running) return;
     const Vec3<Real> p = given[n];
     if (p.x == Real(0) && p.y == Real(0) && p.z == Real(0)) return;
     given[n] = {};

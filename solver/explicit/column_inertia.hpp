@@ -75,7 +75,7 @@ struct YieldOfColumns {
   SolvedColumns<Real> columns;
   Real* shares;
   TALUS_HD void operator()(int c) const {
-    if (columns.clock->halt != running) return;
+    if (columns.clock->alarms.halt != running) return;
     columns.solve(c, shares, [&](int n, Real yield) { shares[n] = yield; });
   }
 };
@@ -87,7 +87,7 @@ struct TakeColumnImpulses {
   Nodes nodes;
   Vec3<Real>* given;
   TALUS_HD void operator()(int c) const {
-    if (columns.clock->halt != running) return;
+    if (columns.clock->alarms.halt != running) return;
     columns.solve(c, given, [&](int n, const Vec3<Real>& change) {
       given[n] = {};
       nodes.add(n, change);

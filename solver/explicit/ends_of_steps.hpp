@@ -26,7 +26,7 @@ struct BeginStep {
     if (n == 0 && opens) {
       Clock now = *clock;  // read at once, not number by number as it is needed
       now.begin_step();
-      if (shaking.acts() && now.halt == running) now.shake(shaking.velocity_at(now.time));
+      if (shaking.acts() && now.alarms.halt == running) now.shake(shaking.velocity_at(now.time));
       *clock = now;
     }
     if (n >= count) return;
@@ -42,7 +42,7 @@ struct CloseBatch {
   Clock* clock;
   TALUS_HD void operator()(int) const {
     Clock now = *clock;
-    now.records_motion = 0;
+    now.motion_maps.is_due = 0;
     now.halt_where_due();
     *clock = now;
   }

@@ -54,8 +54,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         columns_(device, surroundings_.bed(), settings, static_cast<double>(materials_.list[0].density), scene.grid) {
     Clock clock = clock_.read();
     clock.accelerated = 0;
-    clock.steps_between_sorts = steps_between_sorts();
-    if (state.homes.empty()) clock.outflow_volume = clock.outflow_count = 0;  // a sort drops those who have left
+    clock.sorting.steps_between = steps_between_sorts();
+    if (state.homes.empty()) clock.outflow.volume = clock.outflow.count = 0;  // a sort drops those who have left
     clock_.write(clock);
     if (Device::is_gpu || state.homes.empty()) {
       sort(0);
@@ -69,7 +69,7 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   /// The method makes a batch of steps on the device, or one step on a CPU; see Solver::advance().
   BatchReport advance() override {
     Clock clock = clock_.read();
-    clock.halt = clock.request = running;
+    clock.alarms.halt = clock.alarms.request = running;
     clock_.write(clock);
     walls_ = this->template set_walls<Real>(clock.time);
     loads_now_ = loads_.upload(clock.time, clock.time);
@@ -79,38 +79,38 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
         steps_ahead(clock), [&] { step(); }, [&] { clock_.pass_in(); }, [&] { close(); });
     BatchReport report;
     clock = clock_.read();
-    int halt = clock.halt;
+    int halt = clock.alarms.halt;
     this->measured_ = halt == at_event && recording_.has_company();
     if (halt == at_event && !recording_.has_company()) look_back(clock_.data());
-    if (halt == wants_sort) expected_ = clock.steps_since_sort;
+    if (halt == wants_sort) expected_ = clock.sorting.steps_since;
     // A sort comes before an event of the same time (Clock::halt_where_due), whose records see who has left.
-    if (halt == wants_sort || (halt == at_event && clock.outflow_count > 0)) {
-      report.outflow_volume = clock.outflow_volume;
-      report.outflow_count = clock.outflow_count;
-      sort(clock.outflow_count);
-      clock.outflow_volume = 0;
-      clock.outflow_count = 0;
-      clock.steps_since_sort = 0;
-      clock.steps_between_sorts = steps_between_sorts();  // as a run would have it that goes on from here
-      clock.halt = clock.request = running;
+    if (halt == wants_sort || (halt == at_event && clock.outflow.count > 0)) {
+      report.outflow_volume = clock.outflow.volume;
+      report.outflow_count = clock.outflow.count;
+      sort(clock.outflow.count);
+      clock.outflow.volume = 0;
+      clock.outflow.count = 0;
+      clock.sorting.steps_since = 0;
+      clock.sorting.steps_between = steps_between_sorts();  // as a run would have it that goes on from here
+      clock.alarms.halt = clock.alarms.request = running;
       report.sorted = true;
       if (halt == wants_sort && clock.time >= clock.next_event) {
         clock.halt_where_due();
-        halt = clock.halt;
+        halt = clock.alarms.halt;
         look_back(nullptr);
       }
     }
     clock_.write(clock);
     report.can_be_saved = report.sorted || !Device::is_gpu;
     report.clock = clock;
-    report.clock.halt = halt;
+    report.clock.alarms.halt = halt;
     return report;
   }
 
   /// All that a checkpoint keeps. On a CPU that is enough to go on between two sorts; see Solver::state().
   SolverState state() const override {
     SolverState now = Base::state();
-    if (!Device::is_gpu && now.clock.steps_since_sort > 0) {
+    if (!Device::is_gpu && now.clock.sorting.steps_since > 0) {
       const std::vector<std::uint64_t> keys = grid_.homes();  // of those who left at the sort as well, last
       now.homes.assign(keys.begin(), keys.begin() + points_.count());
     }
@@ -122,8 +122,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
     points_.append(points);
     Clock clock = clock_.read();
     sort(0);
-    clock.steps_since_sort = 0;
-    clock.steps_between_sorts = steps_between_sorts();
+    clock.sorting.steps_since = 0;
+    clock.sorting.steps_between = steps_between_sorts();
     this->note_rate(clock, rate);
     clock_.write(clock);
   }
@@ -149,8 +149,8 @@ class ExplicitSolverOf final : public PointSolver<Real, Device, Shape> {
   int steps_ahead(const Clock& clock) const {
     if constexpr (!Device::is_gpu) return 1;
     constexpr int few = 2;
-    const int to_sort =
-        std::min(std::max(expected_ - clock.steps_since_sort, few), clock.steps_between_sorts - clock.steps_since_sort);
+    const int to_sort = std::min(std::max(expected_ - clock.sorting.steps_since, few),
+                                 clock.sorting.steps_between - clock.sorting.steps_since);
     const double to_event = std::ceil((clock.next_event - clock.time) / clock.full_step());
     return std::clamp(static_cast<int>(std::min<double>(to_sort, to_event)), 1, most_batch_steps);
   }

@@ -81,12 +81,12 @@ struct ColumnLosses {
 
   /// The method adds the losses to the clock's.
   TALUS_HD void add_to(Clock& clock) const {
-    atomic_add(&clock.bed_loss, contact);
-    atomic_add(&clock.friction_loss, friction);
-    atomic_add(&clock.damping_loss, damping);
-    atomic_add(&clock.transfer_loss, transfer);
-    atomic_add(&clock.shaking_work, shaking);
-    for (int a = 0; a < 3; ++a) atomic_add(&clock.reaction[a], reaction[a]);
+    atomic_add(&clock.budget.bed_loss, contact);
+    atomic_add(&clock.budget.friction_loss, friction);
+    atomic_add(&clock.budget.damping_loss, damping);
+    atomic_add(&clock.budget.transfer_loss, transfer);
+    atomic_add(&clock.budget.shaking_work, shaking);
+    for (int a = 0; a < 3; ++a) atomic_add(&clock.budget.reaction[a], reaction[a]);
   }
 };
 

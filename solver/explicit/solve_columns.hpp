@@ -47,7 +47,7 @@ struct SolveColumns {
   double bytes(int) const { return grid.nodes * static_cast<double>(6 * sizeof(*nodes) + 2 * sizeof(*mobilities)); }
 
   TALUS_HD void operator()(int c) const {
-    if (clock->halt != running) return;
+    if (clock->alarms.halt != running) return;
     const ColumnNodes nodes_of = ColumnNodes::find(grid, active, c);
     if (!nodes_of.in_domain()) return;
     const Real dt = Real(clock->step_size);

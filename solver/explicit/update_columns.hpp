@@ -76,7 +76,7 @@ struct UpdateColumns {
   /// The column number c: its place, its layers, and whether it is in the domain and the loop goes on.
   TALUS_HD Column locate(int c) const {
     Column at;
-    const int halt = clock->halt;  // looked at once all is on its way
+    const int halt = clock->alarms.halt;  // looked at once all is on its way
     const ActiveColumn place(grid, active, c);
     at.slot = grid.slots[place.block];
     at.i = place.i;

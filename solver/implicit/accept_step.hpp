@@ -136,22 +136,22 @@ struct AcceptStep {
   TALUS_HD void settle(int p, const PointGradients<Real, Shape>& g, Real wave_speed) const {
     const Real speed = length(points.velocity_of(p));
     if (!(speed < Real(1e6)) || !(fabs(points.log_volume[p]) < Real(1e3))) {
-      raise_flag(&clock->failed_point, points.id[p]);
-      raise_flag(&clock->request, failed);
+      raise_flag(&clock->alarms.failed_point, points.id[p]);
+      raise_flag(&clock->alarms.request, failed);
       return;
     }
     const int i = points.cell[0][p], j = points.cell[1][p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
       points.cell[0][p] = -1;
-      atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
-      atomic_increment(&clock->outflow_count);
+      atomic_add(&clock->outflow.volume, static_cast<double>(points.volume[p]));
+      atomic_increment(&clock->outflow.count);
       return;
     }
     // Waves and speed over the cell, the bracket of (T11).
     const Real steep = Real(1) + g.s.slope_x * g.s.slope_x + g.s.slope_y * g.s.slope_y;
     const Real waves = Real(wave_speed * sqrt(Real(2) * g.across * g.across + steep * g.up * g.up));
-    atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + speed * (g.across + g.across + g.up)));
-    atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
+    atomic_max_positive(&clock->control.rate_bits, static_cast<float>(waves + speed * (g.across + g.across + g.up)));
+    atomic_max_positive(&clock->control.speed_bits, static_cast<float>(speed));
   }
 };
 

@@ -42,9 +42,9 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   BatchReport advance() override {
     this->measured_ = false;
     Clock clock = clock_.read();
-    clock.halt = clock.request = running;
-    clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
-    clock.rate_bits = clock.speed_bits = 0;
+    clock.alarms.halt = clock.alarms.request = running;
+    clock.control.fastest_bits = std::max(clock.control.fastest_bits, clock.control.speed_bits);
+    clock.control.rate_bits = clock.control.speed_bits = 0;
     if (loads_.jump_at(clock.time)) clock.accelerated = 0;
     fit_grid(clock.time);
     record_points();
@@ -190,20 +190,20 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   /// The method reports what the step ended with, and drops particles that left the domain.
   void close(BatchReport& report, double step) {
     Clock clock = clock_.read();
-    report.outflow_count = clock.outflow_count;
-    report.outflow_volume = clock.outflow_volume;
-    clock.fastest_bits = std::max(clock.fastest_bits, clock.speed_bits);
-    report.stats.over_cfl = step * static_cast<double>(positive_from_bits(clock.rate_bits));
-    if (clock.request == failed) clock.halt = failed;
-    if (clock.halt != failed && clock.time >= clock.next_event) clock.halt = at_event;
+    report.outflow_count = clock.outflow.count;
+    report.outflow_volume = clock.outflow.volume;
+    clock.control.fastest_bits = std::max(clock.control.fastest_bits, clock.control.speed_bits);
+    report.stats.over_cfl = step * static_cast<double>(positive_from_bits(clock.control.rate_bits));
+    if (clock.alarms.request == failed) clock.alarms.halt = failed;
+    if (clock.alarms.halt != failed && clock.time >= clock.next_event) clock.alarms.halt = at_event;
     // What is looked at between steps, by cell and column, finds the points sorted.
-    if (report.outflow_count > 0 || clock.halt == at_event) this->fit(report.outflow_count);
-    if (clock.halt == at_event) record_points();
+    if (report.outflow_count > 0 || clock.alarms.halt == at_event) this->fit(report.outflow_count);
+    if (clock.alarms.halt == at_event) record_points();
     report.sorted = report.can_be_saved = true;
-    clock.outflow_count = 0;  // reported
-    clock.outflow_volume = 0;
+    clock.outflow.count = 0;  // reported
+    clock.outflow.volume = 0;
     report.clock = clock;
-    clock.halt = clock.request = running;
+    clock.alarms.halt = clock.alarms.request = running;
     clock_.write(clock);
   }
 

@@ -53,7 +53,7 @@ struct ScatterMotion {
 
   /// One thread: one point.
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
-  TALUS_HD bool counts(int p) const { return !(clock && clock->records_motion == 0) && points.cell[0][p] >= 0; }
+  TALUS_HD bool counts(int p) const { return !(clock && clock->motion_maps.is_due == 0) && points.cell[0][p] >= 0; }
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
   TALUS_HD int column_of(const Source& s, int q) const { return grid.column(s.i + q % width, s.j + q / width); }
   TALUS_HD static int node_in(int column, int, int) { return column; }

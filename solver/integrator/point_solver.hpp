@@ -141,8 +141,8 @@ class PointSolver : public Solver {
   }
   /// The method takes account of points that have come with this `rate` [1/s].
   static void note_rate(Clock& clock, double rate) {
-    atomic_max_positive(&clock.rate_bits, static_cast<float>(rate));
-    clock.halt = clock.request = running;
+    atomic_max_positive(&clock.control.rate_bits, static_cast<float>(rate));
+    clock.alarms.halt = clock.alarms.request = running;
   }
 
   /// Whether what repeats may be started with that of other runs: it does not change with time, may do a few steps more
@@ -155,7 +155,7 @@ class PointSolver : public Solver {
   /// The clock that a run goes on with from a state.
   static Clock clock_of(const SolverState& state, const IntegratorSettings& settings) {
     Clock clock = state.clock;
-    clock.transfer_time = settings.transfer.time;
+    clock.subgrid.decay_time = settings.transfer.time;
     return clock;
   }
 

@@ -29,7 +29,7 @@ Trial try_steps(const Plan& plan, const AnyDevice& device, double seconds) {
   const auto first = solver->clock();
   const auto begun = std::chrono::steady_clock::now();
   Clock last = first;
-  while (seconds_since(begun) < seconds && last.time < o.end_time && !(last.halt == failed))
+  while (seconds_since(begun) < seconds && last.time < o.end_time && !(last.alarms.halt == failed))
     last = solver->advance().clock;
   const double steps = static_cast<double>(last.step - first.step);
   return {last.step_size, steps > 0 ? seconds_since(begun) / steps : 0, solver->bytes()};

@@ -51,7 +51,7 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
     const BatchReport batch = stepper_.advance(schedule_.next_event(stepper_.time(), memory_));
     count(batch);
     bool can_be_saved = batch.can_be_saved;
-    if (batch.clock.halt == at_event) {
+    if (batch.clock.alarms.halt == at_event) {
       if (let_in(stepper_.time())) can_be_saved = true;  // what enters is sorted with the others
       pass_events(stepper_.time(), keeper);
     }
@@ -95,7 +95,7 @@ bool RunLoop::left_empty() const {
 void RunLoop::count(const BatchReport& batch) {
   memory_.outflow_volume += batch.outflow_volume;
   memory_.outflow_count += batch.outflow_count;
-  if (batch.clock.halt == failed)
+  if (batch.clock.alarms.halt == failed)
     refuse_lost_point(batch.clock, stepper_.solver().state().points, scene().map, options().cfl);
   watch_.look(batch);
   if (batch.stats.newton == 0) return;

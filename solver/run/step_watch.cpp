@@ -13,15 +13,15 @@
 namespace talus::solver {
 namespace {
 
-double speed_of(const Clock& clock) { return static_cast<double>(positive_from_bits(clock.speed_bits)); }
+double speed_of(const Clock& clock) { return static_cast<double>(positive_from_bits(clock.control.speed_bits)); }
 
 /// The next explicit step as waves and speed allow it, however near the next event is [s]; that of an implicit one as
 /// it was taken.
 double full_step(const BatchReport& batch) {
   const Clock& clock = batch.clock;
-  if (batch.stats.newton > 0) return clock.halt == at_event ? clock.largest_step : clock.step_size;
-  const double rate = static_cast<double>(positive_from_bits(clock.rate_bits));
-  return rate > 0 ? std::min(clock.courant / rate, clock.largest_step) : clock.largest_step;
+  if (batch.stats.newton > 0) return clock.alarms.halt == at_event ? clock.control.longest : clock.step_size;
+  const double rate = static_cast<double>(positive_from_bits(clock.control.rate_bits));
+  return rate > 0 ? std::min(clock.control.courant / rate, clock.control.longest) : clock.control.longest;
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ StepWatch::StepWatch(const Scene& scene, const SolveOptions& o)
       first_step_(explicit_step(scene, o, 0)) {}
 
 void StepWatch::look(const BatchReport& batch) {
-  if (batch.clock.halt == failed) return;
+  if (batch.clock.alarms.halt == failed) return;
   const double step = full_step(batch), time = batch.clock.time;
   const bool stands = time + step == time && time < end_time_;
   // Not a number, where a rate is infinite and a wave as fast.

@@ -72,7 +72,7 @@ BatchReport Stepper::advance(double next_event) {
   const BatchReport batch = take_batch(next_event);
   time_ = batch.clock.time;
   step_ = static_cast<long long>(batch.clock.step);
-  const double rate = positive_from_bits(batch.clock.rate_bits);
+  const double rate = positive_from_bits(batch.clock.control.rate_bits);
   if (batch.stats.newton > 0) {
     over_cfl_ = batch.stats.over_cfl;
   } else if (rate > 0) {
@@ -102,11 +102,12 @@ BatchReport Stepper::take_batch(double next_event) {
   }
   work_.simulated += batch.clock.time - time_;
   work_.work += work_of(options_.flow, count_of(batch));
-  if (!batch.sorted || batch.clock.halt == failed) return batch;  // points that have left are still among the others
+  if (!batch.sorted || batch.clock.alarms.halt == failed)
+    return batch;                   // points that have left are still among the others
   if (interrupted()) return batch;  // the step may have been given up, and its cost says nothing
-  const double rate = positive_from_bits(batch.clock.rate_bits);
+  const double rate = positive_from_bits(batch.clock.control.rate_bits);
   work_.wave_step = rate > 0 ? 1 / rate : 0;
-  work_.speed = positive_from_bits(batch.clock.speed_bits);
+  work_.speed = positive_from_bits(batch.clock.control.speed_bits);
   if (choice_->note(std::exchange(work_, {}))) {
     hand_over();
   } else {

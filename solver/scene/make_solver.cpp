@@ -24,13 +24,13 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings, 
   const auto cells = scene.map.count();
   for_each_running_map([&](const RunningMap& map, auto& values) { values.assign(cells, map.start); }, state.maps);
   const StepSettings& steps = settings.steps;
-  state.clock.courant = steps.cfl;
-  state.clock.largest_step = steps.largest;
-  state.clock.column_spacing = scene.grid.spacing;
-  state.clock.keeps_budget = settings.energy_budget ? 1 : 0;
+  state.clock.control.courant = steps.cfl;
+  state.clock.control.longest = steps.largest;
+  state.clock.motion_maps.column_spacing = scene.grid.spacing;
+  state.clock.budget.is_kept = settings.energy_budget ? 1 : 0;
   const auto rate = static_cast<float>(first_rate(scene.grid, scene.terrain, state.points,
                                                   {steps.fastest_wave, !(steps.kappa > 0)}, steps.initial_speed));
-  atomic_max_positive(&state.clock.rate_bits, rate);
+  atomic_max_positive(&state.clock.control.rate_bits, rate);
   return state;
 }
 

@@ -69,7 +69,7 @@ TALUS_HD void record_motion_sums(const MapView& maps, int column, Vec4<Real>* mo
 template <class Real>
 TALUS_HD void record_motion(const MapView& maps, int column, const Clock& clock, Vec4<Real>* motion,
                             const ColumnDensity<Real>& density, Real spacing) {
-  if (motion && clock.records_motion != 0) record_motion_sums(maps, column, motion, density, spacing);
+  if (motion && clock.motion_maps.is_due != 0) record_motion_sums(maps, column, motion, density, spacing);
 }
 
 }  // namespace talus

@@ -55,7 +55,7 @@ struct GridToParticle {
   };
 
   TALUS_HD void operator()(int p) const {
-    if (clock->halt != running || points.cell[0][p] < 0) return;
+    if (clock->alarms.halt != running || points.cell[0][p] < 0) return;
     const Stencil<Real, Shape> s(grid, points, p);
     const Sums sums = gather(s);
     const Real dt = Real(clock->step_size);
@@ -124,12 +124,12 @@ struct GridToParticle {
 
   TALUS_HD void move_with(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
     Vec3<Real> v = sums.velocity;
-    const Real kept = changes ? Real(clock->kept) : Real(0);
+    const Real kept = changes ? Real(clock->subgrid.kept) : Real(0);
     if (kept > Real(0)) v = (points.velocity_of(p) + sums.change) * kept + v * (Real(1) - kept);
     if constexpr (budget) {
       const Vec3<Real> old = points.velocity_of(p);
       const double mass = static_cast<double>(points.volume[p] * materials.density(points.material, p));
-      atomic_add(&clock->transfer_loss,
+      atomic_add(&clock->budget.transfer_loss,
                  0.5 * mass * (static_cast<double>(dot(old, old)) - static_cast<double>(dot(v, v))));
     }
     points.velocity[0][p] = v.x;
@@ -188,7 +188,7 @@ struct GridToParticle {
     const Real work = tau.xx * g.a.x + tau.yy * g.b.y + tau.zz * g.c.z + tau.xy * (g.a.y + g.b.x) +
                       tau.yz * (g.b.z + g.c.y) + tau.xz * (g.a.z + g.c.x);
     const Real kept = elastic_energy(m, after) - elastic_energy(m, before);
-    atomic_add(&clock->plastic_loss, static_cast<double>(volume) * static_cast<double>(work - kept));
+    atomic_add(&clock->budget.plastic_loss, static_cast<double>(volume) * static_cast<double>(work - kept));
   }
 
   /// The method raises the alarms of the clock: not a number, left the domain, left the home cell's neighbourhood; and
@@ -198,23 +198,23 @@ struct GridToParticle {
     const Real speed = length(v);
     // A point that crossed a cell in one step, or whose state is no number, has left the equations.
     if (!(speed < Real(1e6)) || !(fabs(points.log_volume[p]) < Real(1e3)) || !(fabs(points.offset[2][p]) <= Real(1))) {
-      raise_flag(&clock->failed_point, points.id[p]);
-      raise_flag(&clock->request, failed);
+      raise_flag(&clock->alarms.failed_point, points.id[p]);
+      raise_flag(&clock->alarms.request, failed);
       return;
     }
     const int i = points.cell[0][p], j = points.cell[1][p], k = points.cell[2][p];
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows || !grid.open[grid.column(i, j)]) {
       points.cell[0][p] = -1;
-      atomic_add(&clock->outflow_volume, static_cast<double>(points.volume[p]));
-      atomic_increment(&clock->outflow_count);
+      atomic_add(&clock->outflow.volume, static_cast<double>(points.volume[p]));
+      atomic_increment(&clock->outflow.count);
       return;  // it takes no part in the next steps, and is dropped at the next sort
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
     const Real waves = Real(wave_speed * sqrt(Real(2) * hx * hx + (bound_by_layers ? steep * hz * hz : Real(0))));
     const Real flow = Real(fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz);
-    atomic_max_positive(&clock->rate_bits, static_cast<float>(waves + flow));
-    atomic_max_positive(&clock->speed_bits, static_cast<float>(speed));
+    atomic_max_positive(&clock->control.rate_bits, static_cast<float>(waves + flow));
+    atomic_max_positive(&clock->control.speed_bits, static_cast<float>(speed));
     if (strayed(home[p], i, j, k)) request_sort();
   }
 
@@ -225,7 +225,7 @@ struct GridToParticle {
     return di > grid.drift || di < below - grid.drift || dj > grid.drift || dj < below - grid.drift ||
            dk > grid.climb || dk < below - grid.climb;
   }
-  TALUS_HD void request_sort() const { replace_if(&clock->request, running, wants_sort); }
+  TALUS_HD void request_sort() const { replace_if(&clock->alarms.request, running, wants_sort); }
 };
 
 }  // namespace talus

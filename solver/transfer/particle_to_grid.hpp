@@ -151,7 +151,7 @@ struct ParticleToGrid {
     return q < 4 ? &nodes[node].w + q : q < 7 ? &forces[node].x + (q - 4) : &forces[node].w;
   }
   /// Whether point p gives anything: it is in the domain, and the loop has not halted.
-  TALUS_HD bool counts(int p) const { return clock->halt == running && points.cell[0][p] >= 0; }
+  TALUS_HD bool counts(int p) const { return clock->alarms.halt == running && points.cell[0][p] >= 0; }
 
   /// The nodes of column q receive mass (T3), momentum (T4) and force (T5).
   TALUS_HD void add(const Source& s, int q, Sums (&sums)[static_cast<std::size_t>(deep)]) const {

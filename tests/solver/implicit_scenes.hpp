@@ -43,8 +43,8 @@ inline int steps_to(Solver& solver, double time, StepStats* last = nullptr) {
     const BatchReport batch = solver.advance();
     newton += batch.stats.newton;
     if (last) *last = batch.stats;
-    if (batch.clock.halt == at_event) return newton;
-    if (batch.clock.halt == failed) {
+    if (batch.clock.alarms.halt == at_event) return newton;
+    if (batch.clock.alarms.halt == failed) {
       ADD_FAILURE();
       return newton;
     }

@@ -119,11 +119,11 @@ inline int run_to(Solver& solver, double time) {
   for (;;) {
     const BatchReport batch = solver.advance();
     sorts += batch.sorted ? 1 : 0;
-    if (batch.clock.halt == failed) {
-      ADD_FAILURE() << "point " << batch.clock.failed_point << " failed at t = " << batch.clock.time;
+    if (batch.clock.alarms.halt == failed) {
+      ADD_FAILURE() << "point " << batch.clock.alarms.failed_point << " failed at t = " << batch.clock.time;
       return sorts;
     }
-    if (batch.clock.halt == at_event) return sorts;
+    if (batch.clock.alarms.halt == at_event) return sorts;
   }
 }
 

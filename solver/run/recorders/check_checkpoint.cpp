@@ -77,7 +77,7 @@ void check_points(const Fits& fits, const SolverState& state, std::int64_t pulse
     fits.refuse(fmt::format("it holds {} points, of which the scene has {}", points.size(), seeded));
   fits.within("cell_0", points.cell[0], -1, scene.grid.columns - 1);
   const auto left = std::count(points.cell[0].begin(), points.cell[0].end(), -1);
-  const int counted = state.homes.empty() ? 0 : state.clock.outflow_count;  // a sort drops those who have left
+  const int counted = state.homes.empty() ? 0 : state.clock.outflow.count;  // a sort drops those who have left
   if (left != counted) fits.refuse(fmt::format("{} of its points are outside, and its clock counts {}", left, counted));
   fits.within("cell_1", points.cell[1], 0, scene.grid.rows - 1);
   fits.within("cell_2", points.cell[2], 0, most_layers);
@@ -110,10 +110,10 @@ void check_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   fits.length("force", contacts.force.size(), count);
   fits.length("impulse", contacts.impulse.size(), count);
   const Clock& clock = checkpoint.state.clock;
-  const bool counted = clock.step >= 0 && clock.outflow_count >= 0 && clock.steps_between_sorts > 0 &&
-                       clock.halt >= running && clock.halt <= failed && clock.request >= running &&
-                       clock.request <= failed;
-  if (!(clock.time >= 0) || !(clock.step_size >= 0) || !(clock.courant >= 0) || !counted)
+  const bool counted = clock.step >= 0 && clock.outflow.count >= 0 && clock.sorting.steps_between > 0 &&
+                       clock.alarms.halt >= running && clock.alarms.halt <= failed && clock.alarms.request >= running &&
+                       clock.alarms.request <= failed;
+  if (!(clock.time >= 0) || !(clock.step_size >= 0) || !(clock.control.courant >= 0) || !counted)
     fits.refuse(fmt::format("its clock stands at {:g} s, step {}, of {:g} s", clock.time, clock.step, clock.step_size));
   const RunMemory& memory = checkpoint.memory;
   if (std::min({memory.frames, memory.records, memory.checkpoints, memory.outflow_count}) < 0)

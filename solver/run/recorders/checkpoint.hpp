@@ -26,52 +26,51 @@ struct RunMemory {
   RunHistory history;
 };
 
-/// This function calls item(name, scalar) for every scalar of a clock, in the order of their declaration, with the
-/// names that a checkpoint has for them.
+/// This function calls item(name, scalar) for every scalar of a clock, with the names that a checkpoint has for them.
 template <class AnyClock, class Item>
 void visit_clock(AnyClock& c, Item&& item) {
   item("time", c.time);
   item("step_size", c.step_size);
   item("next_event", c.next_event);
-  item("courant", c.courant);
-  item("largest_step", c.largest_step);
-  item("transfer_time_s", c.transfer_time);
-  item("kept", c.kept);
-  item("outflow_volume", c.outflow_volume);
+  item("courant", c.control.courant);
+  item("largest_step", c.control.longest);
+  item("transfer_time_s", c.subgrid.decay_time);
+  item("kept", c.subgrid.kept);
+  item("outflow_volume", c.outflow.volume);
   item("step", c.step);
-  item("rate_bits", c.rate_bits);
-  item("speed_bits", c.speed_bits);
-  item("fastest_bits", c.fastest_bits);
-  item("halt", c.halt);
-  item("request", c.request);
-  item("steps_since_sort", c.steps_since_sort);
-  item("steps_between_sorts", c.steps_between_sorts);
-  item("outflow_count", c.outflow_count);
-  item("failed_point", c.failed_point);
-  item("keeps_budget", c.keeps_budget);
-  item("bed_loss", c.bed_loss);
-  item("friction_loss", c.friction_loss);
-  item("drag_loss", c.drag_loss);
-  item("landing_loss", c.landing_loss);
-  item("holding_loss", c.holding_loss);
-  item("damping_loss", c.damping_loss);
-  item("plastic_loss", c.plastic_loss);
-  item("transfer_loss", c.transfer_loss);
-  item("shaking_work", c.shaking_work);
-  item("reaction_x", c.reaction[0]);
-  item("reaction_y", c.reaction[1]);
-  item("reaction_z", c.reaction[2]);
+  item("rate_bits", c.control.rate_bits);
+  item("speed_bits", c.control.speed_bits);
+  item("fastest_bits", c.control.fastest_bits);
+  item("halt", c.alarms.halt);
+  item("request", c.alarms.request);
+  item("steps_since_sort", c.sorting.steps_since);
+  item("steps_between_sorts", c.sorting.steps_between);
+  item("outflow_count", c.outflow.count);
+  item("failed_point", c.alarms.failed_point);
+  item("keeps_budget", c.budget.is_kept);
+  item("bed_loss", c.budget.bed_loss);
+  item("friction_loss", c.budget.friction_loss);
+  item("drag_loss", c.budget.drag_loss);
+  item("landing_loss", c.budget.landing_loss);
+  item("holding_loss", c.budget.holding_loss);
+  item("damping_loss", c.budget.damping_loss);
+  item("plastic_loss", c.budget.plastic_loss);
+  item("transfer_loss", c.budget.transfer_loss);
+  item("shaking_work", c.budget.shaking_work);
+  item("reaction_x", c.budget.reaction[0]);
+  item("reaction_y", c.budget.reaction[1]);
+  item("reaction_z", c.budget.reaction[2]);
   item("accelerated", c.accelerated);
-  item("column_spacing", c.column_spacing);
-  item("way_unrecorded", c.way_unrecorded);
-  item("steps_unrecorded", c.steps_unrecorded);
-  item("records_motion", c.records_motion);
-  item("shaking_x", c.shaking[0]);
-  item("shaking_y", c.shaking[1]);
-  item("shaking_z", c.shaking[2]);
-  item("ground_velocity_x", c.ground_velocity[0]);
-  item("ground_velocity_y", c.ground_velocity[1]);
-  item("ground_velocity_z", c.ground_velocity[2]);
+  item("column_spacing", c.motion_maps.column_spacing);
+  item("way_unrecorded", c.motion_maps.path_unrecorded);
+  item("steps_unrecorded", c.motion_maps.steps_unrecorded);
+  item("records_motion", c.motion_maps.is_due);
+  item("shaking_x", c.shaking.acceleration[0]);
+  item("shaking_y", c.shaking.acceleration[1]);
+  item("shaking_z", c.shaking.acceleration[2]);
+  item("ground_velocity_x", c.shaking.velocity[0]);
+  item("ground_velocity_y", c.shaking.velocity[1]);
+  item("ground_velocity_z", c.shaking.velocity[2]);
 }
 
 /// This function calls item(name, value) for every scalar and list of a run's memory but its history, whose columns

@@ -21,9 +21,9 @@ constexpr Column<Instant> run_columns[] = {
     {"volume_m3", "m3", [](const Instant& i) { return i.energies.volume; }},
     {"outflow_m3", "m3", [](const Instant& i) { return i.counted.outflow_volume; }},
     {"speed_max_m_s", "m s-1",
-     [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.speed_bits)); }},
+     [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.control.speed_bits)); }},
     {"speed_max_so_far_m_s", "m s-1",
-     [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.fastest_bits)); }},
+     [](const Instant& i) { return static_cast<double>(positive_from_bits(i.clock.control.fastest_bits)); }},
     {"moving_volume_m3", "m3", [](const Instant& i) { return i.energies.moving_volume; }},
     {"moving_speed_m_s", "m s-1", [](const Instant& i) { return i.energies.moving_speed(); }},
     {"momentum_x_kg_m_s", "kg m s-1", [](const Instant& i) { return i.energies.momentum.x; }},
@@ -36,30 +36,30 @@ constexpr Column<Instant> run_columns[] = {
 };
 
 constexpr Column<Instant> budget_columns[] = {
-    {"bed_loss_J", "J", [](const Instant& i) { return i.clock.bed_loss; }},
-    {"friction_loss_J", "J", [](const Instant& i) { return i.clock.friction_loss; }},
-    {"drag_loss_J", "J", [](const Instant& i) { return i.clock.drag_loss; }},
-    {"landing_loss_J", "J", [](const Instant& i) { return i.clock.landing_loss; }},
-    {"holding_loss_J", "J", [](const Instant& i) { return i.clock.holding_loss; }},
-    {"damping_loss_J", "J", [](const Instant& i) { return i.clock.damping_loss; }},
-    {"plastic_loss_J", "J", [](const Instant& i) { return i.clock.plastic_loss; }},
-    {"transfer_loss_J", "J", [](const Instant& i) { return i.clock.transfer_loss; }},
-    {"reaction_x_N_s", "N s", [](const Instant& i) { return i.clock.reaction[0]; }},
-    {"reaction_y_N_s", "N s", [](const Instant& i) { return i.clock.reaction[1]; }},
-    {"reaction_z_N_s", "N s", [](const Instant& i) { return i.clock.reaction[2]; }},
+    {"bed_loss_J", "J", [](const Instant& i) { return i.clock.budget.bed_loss; }},
+    {"friction_loss_J", "J", [](const Instant& i) { return i.clock.budget.friction_loss; }},
+    {"drag_loss_J", "J", [](const Instant& i) { return i.clock.budget.drag_loss; }},
+    {"landing_loss_J", "J", [](const Instant& i) { return i.clock.budget.landing_loss; }},
+    {"holding_loss_J", "J", [](const Instant& i) { return i.clock.budget.holding_loss; }},
+    {"damping_loss_J", "J", [](const Instant& i) { return i.clock.budget.damping_loss; }},
+    {"plastic_loss_J", "J", [](const Instant& i) { return i.clock.budget.plastic_loss; }},
+    {"transfer_loss_J", "J", [](const Instant& i) { return i.clock.budget.transfer_loss; }},
+    {"reaction_x_N_s", "N s", [](const Instant& i) { return i.clock.budget.reaction[0]; }},
+    {"reaction_y_N_s", "N s", [](const Instant& i) { return i.clock.budget.reaction[1]; }},
+    {"reaction_z_N_s", "N s", [](const Instant& i) { return i.clock.budget.reaction[2]; }},
 };
 
 constexpr Column<Instant> shaking_columns[] = {
-    {"shaking_x_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking[0]; }},
-    {"shaking_y_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking[1]; }},
-    {"shaking_z_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking[2]; }},
-    {"ground_velocity_x_m_s", "m s-1", [](const Instant& i) { return i.clock.ground_velocity[0]; }},
-    {"ground_velocity_y_m_s", "m s-1", [](const Instant& i) { return i.clock.ground_velocity[1]; }},
-    {"ground_velocity_z_m_s", "m s-1", [](const Instant& i) { return i.clock.ground_velocity[2]; }},
+    {"shaking_x_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking.acceleration[0]; }},
+    {"shaking_y_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking.acceleration[1]; }},
+    {"shaking_z_m_s2", "m s-2", [](const Instant& i) { return i.clock.shaking.acceleration[2]; }},
+    {"ground_velocity_x_m_s", "m s-1", [](const Instant& i) { return i.clock.shaking.velocity[0]; }},
+    {"ground_velocity_y_m_s", "m s-1", [](const Instant& i) { return i.clock.shaking.velocity[1]; }},
+    {"ground_velocity_z_m_s", "m s-1", [](const Instant& i) { return i.clock.shaking.velocity[2]; }},
 };
 
 constexpr Column<Instant> shaking_budget_columns[] = {
-    {"shaking_work_J", "J", [](const Instant& i) { return i.clock.shaking_work; }},
+    {"shaking_work_J", "J", [](const Instant& i) { return i.clock.budget.shaking_work; }},
 };
 
 /// The recorder of the numbers of the whole run.

@@ -146,7 +146,7 @@ void SectionRecorder::record(const Instant& now, RunHistory& history) {
   const std::vector<double>& time = history.at("time_s").values;
   const std::size_t row = history.at(section_prefix(lines_[0].name) + "passed_m3").values.size();
   const double since = row > 0 ? now.time - time[row - 1] : 0;
-  const double fastest = static_cast<double>(positive_from_bits(now.clock.fastest_bits));
+  const double fastest = static_cast<double>(positive_from_bits(now.clock.control.fastest_bits));
   const ParticleState points = now.solver.shown();
   const std::vector<double> thickness = now.solver.thickness();
   const std::size_t entered = inflow_.points_in(now.counted.pulses);

@@ -33,7 +33,7 @@ StepStats advance_to(Solver& solver, double time) {
     const BatchReport batch = solver.advance();
     sum.newton += batch.stats.newton;
     sum.linear += batch.stats.linear;
-    if (batch.clock.halt == failed)
+    if (batch.clock.alarms.halt == failed)
       throw NumericalError(
           {"a point of the ground was lost", "its state is no number", "Look at the recipe's numbers"});
   }

@@ -26,7 +26,7 @@ struct HeldColumn {
 
   /// Speeds along the slope and away from it of the three [m/s].
   explicit HeldColumn(double along, double base, double above) {
-    clock.keeps_budget = 1;
+    clock.budget.is_kept = 1;
     clock.step_size = 0.1;
     put(0, along, base);
     put(1, along, above);
@@ -57,10 +57,10 @@ TEST(HoldColumns, takes_what_the_column_leaves_by_as_a_whole) {
   }
   EXPECT_NEAR(c.away(4), 3, 1e-14) << "what flies above is left alone";
   EXPECT_EQ(c.rise[HeldColumn::column], 0) << "it lies on the bed";
-  EXPECT_NEAR(c.clock.holding_loss, 0.5 * 200 * 2 * 2, 1e-10);
-  EXPECT_NEAR(c.clock.bed_loss + c.clock.transfer_loss, 0, 1e-10);
-  EXPECT_NEAR(c.clock.reaction[0], 200 * 2 * 0.6, 1e-10);
-  EXPECT_NEAR(c.clock.reaction[2], -200 * 2 * 0.8, 1e-10);
+  EXPECT_NEAR(c.clock.budget.holding_loss, 0.5 * 200 * 2 * 2, 1e-10);
+  EXPECT_NEAR(c.clock.budget.bed_loss + c.clock.budget.transfer_loss, 0, 1e-10);
+  EXPECT_NEAR(c.clock.budget.reaction[0], 200 * 2 * 0.6, 1e-10);
+  EXPECT_NEAR(c.clock.budget.reaction[2], -200 * 2 * 0.8, 1e-10);
   EXPECT_NEAR(c.changes[static_cast<std::size_t>(c.grid.view().find(5, 2, 1))].z, -2 * 0.8, 1e-14);
 }
 
@@ -80,7 +80,7 @@ TEST(HoldColumns, leaves_alone_what_presses) {
   const auto before = c.nodes;
   c.hold();
   for (std::size_t n = 0; n < before.size(); ++n) EXPECT_EQ(c.nodes[n].z, before[n].z);
-  EXPECT_EQ(c.clock.holding_loss, 0);
+  EXPECT_EQ(c.clock.budget.holding_loss, 0);
 }
 
 TEST(HoldColumns, stays_before_a_wall_that_the_nodes_have_met) {
@@ -133,7 +133,7 @@ TEST(CountLanding, counts_what_bed_and_weight_took_of_the_motion_across_the_bed)
                                                        .step = {&c.clock, 0, {{0, 0, -10}}}});
     const double taken = impulse - 200 * 10 * 0.8 * 0.1;  // beyond the weight of what lies on the bed
     const double was = 1 + taken / 200;                   // towards the bed, before
-    EXPECT_NEAR(c.clock.landing_loss, 0.5 * 200 * (was * was - 1), 1e-10) << impulse;
+    EXPECT_NEAR(c.clock.budget.landing_loss, 0.5 * 200 * (was * was - 1), 1e-10) << impulse;
   }
 }
 

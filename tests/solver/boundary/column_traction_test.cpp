@@ -131,7 +131,7 @@ TEST(SlowColumns, takes_cohesion_where_asked) {
 
 TEST(SlowColumns, counts_what_the_bed_takes) {
   Sheet s;
-  s.clock.keeps_budget = 1;
+  s.clock.budget.is_kept = 1;
   double before = 0, after = 0;
   const auto energy = [&] {
     double sum = 0;
@@ -141,10 +141,10 @@ TEST(SlowColumns, counts_what_the_bed_takes) {
   before = energy();
   s.slow();
   after = energy();
-  EXPECT_NEAR(s.clock.bed_loss, before - after, 1e-9);
-  EXPECT_NEAR(s.clock.drag_loss, before - after, 1e-9);
-  EXPECT_NEAR(s.clock.transfer_loss, after - before, 1e-9);
-  EXPECT_LT(s.clock.reaction[0], 0);
+  EXPECT_NEAR(s.clock.budget.bed_loss, before - after, 1e-9);
+  EXPECT_NEAR(s.clock.budget.drag_loss, before - after, 1e-9);
+  EXPECT_NEAR(s.clock.budget.transfer_loss, after - before, 1e-9);
+  EXPECT_LT(s.clock.budget.reaction[0], 0);
 }
 
 /// Grains over a rough bed: mu between 0.4 and 0.6, over 0.02 m, in a mass of 2000 kg/m3.

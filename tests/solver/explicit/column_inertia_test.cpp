@@ -104,7 +104,7 @@ TEST(ColumnInertia, yields_as_impulses_of_these_shares_move_it) {
 
 TEST(ColumnInertia, does_nothing_once_the_clock_has_halted) {
   KeptColumn c;
-  c.clock.halt = at_event;
+  c.clock.alarms.halt = at_event;
   c.given[c.place(2)] = {50, 20, -10};
   c.take();
   EXPECT_EQ(c.nodes[c.place(2)].y, 0);

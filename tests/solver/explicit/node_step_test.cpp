@@ -36,8 +36,8 @@ TEST(NodeStep, losses_tell_friction_from_what_presses) {
   EXPECT_DOUBLE_EQ(losses.transfer, 8) << "the kinetic energy that the node gained";
   Clock clock;
   losses.add_to(clock);
-  EXPECT_DOUBLE_EQ(clock.friction_loss, 6);
-  EXPECT_DOUBLE_EQ(clock.transfer_loss, 8);
+  EXPECT_DOUBLE_EQ(clock.budget.friction_loss, 6);
+  EXPECT_DOUBLE_EQ(clock.budget.transfer_loss, 8);
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ TEST(ShakingWork, is_that_of_the_inertia_on_the_mean_velocity) {
   column += node;
   column += node;
   column.add_to(clock);
-  EXPECT_DOUBLE_EQ(clock.shaking_work, 6);
-  EXPECT_EQ(clock.bed_loss, 0);
+  EXPECT_DOUBLE_EQ(clock.budget.shaking_work, 6);
+  EXPECT_EQ(clock.budget.bed_loss, 0);
 }
 
 TEST(ShakingWork, clocks_add_up_to_the_velocity_of_the_ground) {
@@ -27,10 +27,10 @@ TEST(ShakingWork, clocks_add_up_to_the_velocity_of_the_ground) {
   Vec3<double> sum{};
   for (const double step : {0.1, 0.7, 1e-4}) {
     clock.step_size = step;
-    clock.shake({clock.ground_velocity[0] + step * step, 1 + step, -3 * step});
+    clock.shake({clock.shaking.velocity[0] + step * step, 1 + step, -3 * step});
     sum += clock.ground_acceleration() * step;
   }
-  EXPECT_NEAR(sum.x, clock.ground_velocity[0], 1e-15);
+  EXPECT_NEAR(sum.x, clock.shaking.velocity[0], 1e-15);
   EXPECT_NEAR(sum.y, 1 + 1e-4, 1e-15);
   EXPECT_NEAR(sum.z, -3e-4, 1e-15);
 }

@@ -94,11 +94,11 @@ TEST(UpdateColumns, damps_a_share_of_the_force_against_the_velocity) {
 TEST(UpdateColumns, counts_what_the_bed_takes_where_a_budget_is_kept) {
   Updated u;
   u.update<NodeContent::force, true>();
-  EXPECT_NEAR(u.clock.reaction[0], -100 * 0.5, 1e-12);  // impulses of the base node, rounded
-  EXPECT_NEAR(u.clock.reaction[2], 100 * 1, 1e-12);
+  EXPECT_NEAR(u.clock.budget.reaction[0], -100 * 0.5, 1e-12);  // impulses of the base node, rounded
+  EXPECT_NEAR(u.clock.budget.reaction[2], 100 * 1, 1e-12);
   const double mean = 0.5 * (3 + 2.5);  // velocity along x during the step; that of z stays zero
-  EXPECT_NEAR(u.clock.bed_loss, 100 * 0.5 * mean, 1e-10);
-  EXPECT_NEAR(u.clock.friction_loss, 100 * 0.5 * mean, 1e-10) << "all of it";
+  EXPECT_NEAR(u.clock.budget.bed_loss, 100 * 0.5 * mean, 1e-10);
+  EXPECT_NEAR(u.clock.budget.friction_loss, 100 * 0.5 * mean, 1e-10) << "all of it";
   EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * 1, 1e-12) << "the weight of the base node";
   EXPECT_EQ(u.pressed[0], 0) << "nothing there";
 }
@@ -110,8 +110,8 @@ TEST(UpdateColumns, tells_friction_from_what_presses_on_a_slope) {
   u.update<NodeContent::force, true>();
   const double into = 5 + 0.8, along = 5 - 0.6, left = along - 0.5 * into;  // with the step's gravity, 1 m/s
   EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * into, 1e-9);
-  EXPECT_NEAR(u.clock.friction_loss, 100 * 0.5 * into * 0.5 * (5 + left), 1e-9);
-  EXPECT_NEAR(u.clock.bed_loss, u.clock.friction_loss + 100 * into * 0.5 * 5, 1e-9);
+  EXPECT_NEAR(u.clock.budget.friction_loss, 100 * 0.5 * into * 0.5 * (5 + left), 1e-9);
+  EXPECT_NEAR(u.clock.budget.bed_loss, u.clock.budget.friction_loss + 100 * into * 0.5 * 5, 1e-9);
 }
 
 TEST(UpdateColumns, stops_at_a_fixed_wall) {
@@ -175,7 +175,7 @@ TEST(UpdateColumns, tells_the_tractions_how_fast_columns_rise) {
 
 TEST(UpdateColumns, does_nothing_once_the_clock_has_halted) {
   Updated u;
-  u.clock.halt = wants_sort;
+  u.clock.alarms.halt = wants_sort;
   u.update<NodeContent::impulse>();
   EXPECT_EQ(u.at(u.nodes, 3).x, 300) << "still a momentum";
 }

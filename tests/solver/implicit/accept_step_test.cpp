@@ -89,8 +89,8 @@ TEST(AcceptStep, moves_a_point_with_the_nodes_and_gives_it_their_velocity) {
   EXPECT_NEAR(a.point.velocity[2], -4, 1e-14);
   EXPECT_NEAR(a.acceleration[1], 6, 1e-14);
   EXPECT_NEAR(a.point.log_volume, 0, 1e-14) << "it moved as a whole";
-  EXPECT_FLOAT_EQ(positive_from_bits(a.clock.speed_bits), 5);
-  EXPECT_EQ(a.clock.outflow_count, 0);
+  EXPECT_FLOAT_EQ(positive_from_bits(a.clock.control.speed_bits), 5);
+  EXPECT_EQ(a.clock.outflow.count, 0);
 }
 
 TEST(AcceptStep, lets_a_point_leave_where_the_grid_is_closed) {
@@ -98,8 +98,8 @@ TEST(AcceptStep, lets_a_point_leave_where_the_grid_is_closed) {
   a.grid.open.assign(a.grid.open.size(), 0);
   a.accept({});
   EXPECT_EQ(a.point.cell[0], -1);
-  EXPECT_EQ(a.clock.outflow_count, 1);
-  EXPECT_EQ(a.clock.outflow_volume, 0.25);
+  EXPECT_EQ(a.clock.outflow.count, 1);
+  EXPECT_EQ(a.clock.outflow.volume, 0.25);
 }
 
 TEST(AcceptStep, reports_a_point_whose_state_is_not_a_number) {
@@ -107,8 +107,8 @@ TEST(AcceptStep, reports_a_point_whose_state_is_not_a_number) {
   a.point.id = 42;
   a.point.log_volume = NAN;
   a.accept({});
-  EXPECT_EQ(a.clock.request, failed);
-  EXPECT_EQ(a.clock.failed_point, 42);
+  EXPECT_EQ(a.clock.alarms.request, failed);
+  EXPECT_EQ(a.clock.alarms.failed_point, 42);
 }
 
 }  // namespace

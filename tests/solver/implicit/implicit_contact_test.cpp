@@ -75,9 +75,9 @@ TEST_P(ImplicitContact, meets_an_indefinite_tangent_and_says_so) {
     const auto solver = make_solver(scene, o, GetParam());
     solver->set_next_event(1);
     bool indefinite = false;
-    for (BatchReport batch; batch.clock.halt != at_event;) {
+    for (BatchReport batch; batch.clock.alarms.halt != at_event;) {
       batch = solver->advance();
-      ASSERT_NE(batch.clock.halt, failed);
+      ASSERT_NE(batch.clock.alarms.halt, failed);
       indefinite = indefinite || batch.stats.indefinite;
     }
     EXPECT_TRUE(indefinite);
@@ -171,7 +171,7 @@ TEST_P(ImplicitContact, slides_down_an_incline_with_friction) {
     const BatchReport b = solver->advance();
     newton += b.stats.newton;
     cfl = b.stats.over_cfl;
-    if (b.clock.halt == at_event) break;
+    if (b.clock.alarms.halt == at_event) break;
   }
   const Centre end = centre(*solver, scene);
   const double a = 9.81 * (std::sin(angle) - std::tan(20 * std::numbers::pi / 180) * std::cos(angle));
@@ -201,9 +201,9 @@ TEST_P(ImplicitContact, slides_through_a_hollow_as_explicit_steps_do) {
     EXPECT_NEAR(std::accumulate(thickness.begin(), thickness.end(), 0.0), 32, 1e-9) << "before the first step";
     const double start = centre(*solver, scene).x;
     solver->set_next_event(4.0);
-    for (BatchReport batch; batch.clock.halt != at_event;) {
+    for (BatchReport batch; batch.clock.alarms.halt != at_event;) {
       batch = solver->advance();
-      EXPECT_NE(batch.clock.halt, failed);
+      EXPECT_NE(batch.clock.alarms.halt, failed);
       last.over_cfl = std::max(last.over_cfl, batch.stats.over_cfl);
     }
     return centre(*solver, scene).x - start;
@@ -252,9 +252,9 @@ TEST_P(ImplicitContact, lets_a_heap_of_sand_collapse_at_ten_times_the_cfl_step) 
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
     solver->set_next_event(1.0);
-    for (BatchReport batch; batch.clock.halt != at_event;) {
+    for (BatchReport batch; batch.clock.alarms.halt != at_event;) {
       batch = solver->advance();
-      EXPECT_NE(batch.clock.halt, failed);
+      EXPECT_NE(batch.clock.alarms.halt, failed);
       sums.newton += batch.stats.newton;
       sums.cuts += batch.stats.cuts;
       sums.over_cfl = std::max(sums.over_cfl, batch.stats.over_cfl);

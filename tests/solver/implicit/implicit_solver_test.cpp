@@ -111,12 +111,12 @@ TEST(ImplicitSolver, counts_those_who_leave_once) {
   while (report.outflow_count == 0) report = implicit->advance();
   EXPECT_GT(report.outflow_volume, 0);
   const SolverState state = implicit->state();
-  EXPECT_EQ(state.clock.outflow_count, 0);
-  EXPECT_EQ(state.clock.outflow_volume, 0);
+  EXPECT_EQ(state.clock.outflow.count, 0);
+  EXPECT_EQ(state.clock.outflow.volume, 0);
   // Explicit steps that take over lose no further point, nor do they where a checkpoint says otherwise.
   options.integrator = Integrator::explicit_;
   SolverState stale = state;
-  stale.clock.outflow_count = report.outflow_count;
+  stale.clock.outflow.count = report.outflow_count;
   for (const SolverState& from : {state, stale}) {
     const auto solver = resume_solver(scene, options, On::cpu, from);
     run_to(*solver, state.clock.time + 1e-9);

@@ -150,7 +150,7 @@ TEST_P(Implicit, solves_linear_systems_no_further_than_newton_can_use) {
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
     solver->set_next_event(1.0);
-    for (BatchReport batch; batch.clock.halt != at_event;) {
+    for (BatchReport batch; batch.clock.alarms.halt != at_event;) {
       batch = solver->advance();
       linear[which] += batch.stats.linear;
     }

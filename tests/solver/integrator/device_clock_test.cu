@@ -18,7 +18,7 @@ class TheDeviceClock : public InEachPlace {
   static void take_turns() {
     const Device device = Device::make();
     Clock start;
-    start.largest_step = 0.5;
+    start.control.longest = 0.5;
     start.next_event = 10;
     DeviceClock<Device> clock(device, start);
     const Clock* const where = clock.data();
@@ -36,7 +36,7 @@ class TheDeviceClock : public InEachPlace {
     EXPECT_EQ(clock.read().next_event, 2) << "what the host did";
     steps(4);
     EXPECT_EQ(clock.read().time, 2);
-    EXPECT_EQ(clock.read().halt, at_event);
+    EXPECT_EQ(clock.read().alarms.halt, at_event);
     steps(1);
     EXPECT_EQ(clock.read().step, 4) << "handed over without a change of the host";
     EXPECT_EQ(clock.data(), where);

@@ -27,7 +27,7 @@ struct MovingPoints {
     MaterialOptions options;
     options.density = 2000;
     materials.list[0] = make_material<double>(options);
-    clock.records_motion = 1;
+    clock.motion_maps.is_due = 1;
   }
   MapView maps(double threshold) {
     return {{thickness.data(), speed.data(), pressure.data(), arrival.data()}, threshold};
@@ -85,7 +85,7 @@ TEST(MotionMaps, leave_no_sums_behind) {
 
 TEST(MotionMaps, record_when_the_clock_says_so) {
   MovingPoints moving;
-  moving.clock.records_motion = 0;
+  moving.clock.motion_maps.is_due = 0;
   auto points = two_points();
   moving.record<Quadratic>(points);
   EXPECT_EQ(*std::max_element(moving.speed.begin(), moving.speed.end()), 0);

@@ -62,8 +62,8 @@ void interleave(Solver& first, Solver& second, double end) {
   second.set_next_event(end);
   bool first_ended = false, second_ended = false;
   while (!first_ended || !second_ended) {
-    if (!first_ended) first_ended = first.advance().clock.halt == at_event;
-    if (!second_ended) second_ended = second.advance().clock.halt == at_event;
+    if (!first_ended) first_ended = first.advance().clock.alarms.halt == at_event;
+    if (!second_ended) second_ended = second.advance().clock.alarms.halt == at_event;
   }
 }
 

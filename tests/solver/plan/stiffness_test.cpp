@@ -88,7 +88,7 @@ TEST_P(StiffnessRuns, leave_the_deposit_where_it_was) {
   const auto deposit = [&](const SolveOptions& o) {
     const auto solver = make_solver(make_scene(d, o), o, GetParam());
     solver->set_next_event(o.end_time);
-    while (solver->clock().time < o.end_time) EXPECT_NE(solver->advance().clock.halt, failed);
+    while (solver->clock().time < o.end_time) EXPECT_NE(solver->advance().clock.alarms.halt, failed);
     return std::pair{solver->thickness(), solver->clock().step};
   };
   SolveOptions full = sliding(1e9);

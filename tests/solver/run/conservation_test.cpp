@@ -230,7 +230,7 @@ TEST_P(Conservation, deforms_uniformly_under_a_linear_velocity) {
     linear.give_to(scene.points);
     const auto solver = make_solver(scene, o, GetParam());
     solver->set_next_event(5e-4);  // one step, from zero stress
-    while (solver->advance().clock.halt != at_event) {
+    while (solver->advance().clock.alarms.halt != at_event) {
     }
     const auto steps = solver->clock().step;
     const double worst = linear.worst_error(solver->state().points, 5e-4 / static_cast<double>(steps), steps == 1);
@@ -277,7 +277,7 @@ TEST_P(Conservation, counts_what_leaves) {
   for (;;) {
     const BatchReport batch = solver->advance();
     left += batch.outflow_volume;
-    if (batch.clock.halt == at_event) break;
+    if (batch.clock.alarms.halt == at_event) break;
   }
   EXPECT_GT(left, 0);
   EXPECT_GT(solver->particle_count(), 0);
@@ -324,17 +324,18 @@ TEST_P(Conservation, closes_the_energy_budget_of_a_slide) {
     const Energies end = solver->energies();
     const Clock clock = solver->clock();
     const double gone = start.kinetic + start.potential + start.elastic - end.kinetic - end.potential - end.elastic;
-    const double lost = clock.bed_loss + clock.damping_loss + clock.plastic_loss + clock.transfer_loss;
+    const double lost =
+        clock.budget.bed_loss + clock.budget.damping_loss + clock.budget.plastic_loss + clock.budget.transfer_loss;
     EXPECT_GT(gone, 0.5 * start.potential);
     EXPECT_NEAR(lost, gone, 0.01 * gone);
-    EXPECT_GT(clock.bed_loss, 0.2 * gone);
-    EXPECT_GT(clock.plastic_loss, 0);
-    EXPECT_EQ(clock.damping_loss > 0, damping > 0);
+    EXPECT_GT(clock.budget.bed_loss, 0.2 * gone);
+    EXPECT_GT(clock.budget.plastic_loss, 0);
+    EXPECT_EQ(clock.budget.damping_loss > 0, damping > 0);
     std::printf(
         "  of %.4g J: bed %.1f %%, plastic flow %.1f %%, damping %.1f %%, between points and grid %.1f %%, not "
         "accounted for %.2f %%\n",
-        gone, 100 * clock.bed_loss / gone, 100 * clock.plastic_loss / gone, 100 * clock.damping_loss / gone,
-        100 * clock.transfer_loss / gone, 100 * (gone - lost) / gone);
+        gone, 100 * clock.budget.bed_loss / gone, 100 * clock.budget.plastic_loss / gone,
+        100 * clock.budget.damping_loss / gone, 100 * clock.budget.transfer_loss / gone, 100 * (gone - lost) / gone);
   }
 }
 

@@ -15,7 +15,7 @@ TEST(Progress, line_has_physics_first_and_the_time_to_come_last) {
   clock.time = 30;
   clock.step = 1240;
   clock.step_size = 0.01;
-  atomic_max_positive(&clock.speed_bits, 38.0F);
+  atomic_max_positive(&clock.control.speed_bits, 38.0F);
   EXPECT_EQ(progress_line(clock, {.end_time = 120, .mass_error = 2e-15, .wall_time = 60}),
             "t 30.00/120 s  step 1240  dt 0.01 s  v_max 38.0 m/s  mass error 2.0e-15  eta 3 min");
   clock.time = 0;
@@ -24,7 +24,7 @@ TEST(Progress, line_has_physics_first_and_the_time_to_come_last) {
 
 TEST(Progress, lost_point_is_named_with_its_place) {
   Clock clock;
-  clock.failed_point = 7;
+  clock.alarms.failed_point = 7;
   clock.step_size = 0.5;
   ParticleState points;
   points.id = {3, 7};

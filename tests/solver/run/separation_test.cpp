@@ -120,7 +120,7 @@ TEST_P(Separated, a_slab_that_may_not_leave_its_bed_slides_over_the_crest) {
     std::printf(
         "  %g m in layers of %g m: %.3f m high (%.3f), way %.2f %% off, kinetic energy %.2f %%, holding %.2f %%\n",
         crest.thickness, crest.layer_height, height, high, 100 * (x - ahead) / way, 100 * (e.kinetic / gained - 1),
-        100 * run.solver->clock().holding_loss / gained);
+        100 * run.solver->clock().budget.holding_loss / gained);
     EXPECT_NEAR(height, high, 0.1 * high);
     EXPECT_NEAR(x, ahead, 0.005 * way);  // 0.1 % in 2 m, which is not thin beside the 10 m of the crest's bend
     EXPECT_NEAR(e.kinetic, gained, 0.025 * gained);  // the edge, and a step's worth of bend in every step, are lost
@@ -137,7 +137,7 @@ TEST_P(Separated, what_is_pulled_to_the_ground_rubs_none) {
   o.base.law = FrictionLaw::coulomb;
   o.base.friction_angle = 40;
   const Run rough(domain(crest), o, GetParam(), 0.5);
-  const double rubbed = rough.solver->clock().friction_loss / rough.solver->energies().kinetic;
+  const double rubbed = rough.solver->clock().budget.friction_loss / rough.solver->energies().kinetic;
   std::printf("  friction took %.4f %% of the kinetic energy\n", 100 * rubbed);
   EXPECT_LT(std::abs(rubbed), 0.005) << "0.5 s of mu g cos v would take a third";
   EXPECT_NEAR(rough.solver->energies().kinetic, smooth.solver->energies().kinetic,
@@ -150,8 +150,8 @@ TEST_P(Separated, momentum_and_volume_are_kept_in_account_of_what_the_bed_gives)
     const Energies e = run.solver->energies();
     const Clock clock = run.solver->clock();
     const double size = run.mass() * Crest::speed;
-    EXPECT_NEAR(e.momentum.x, run.before.momentum.x + clock.reaction[0], 1e-9 * size);
-    EXPECT_NEAR(e.momentum.z, run.before.momentum.z + clock.reaction[2] - run.mass() * pull * time, 1e-9 * size);
+    EXPECT_NEAR(e.momentum.x, run.before.momentum.x + clock.budget.reaction[0], 1e-9 * size);
+    EXPECT_NEAR(e.momentum.z, run.before.momentum.z + clock.budget.reaction[2] - run.mass() * pull * time, 1e-9 * size);
     EXPECT_NEAR(e.volume, run.before.volume, 1e-12 * e.volume);
   }
 }
@@ -217,9 +217,9 @@ TEST_P(Separated, a_fall_is_lost_in_landing) {
     o.walls = {};
     const Run run(d, o, GetParam(), 4);
     const Energies e = run.solver->energies();
-    const double due = run.mass() * pull * (fall - 1.5 * layer), landing = run.solver->clock().landing_loss;
+    const double due = run.mass() * pull * (fall - 1.5 * layer), landing = run.solver->clock().budget.landing_loss;
     std::printf("  layers of %g m: landing %.3f of what fell, friction %.3f, still moving %.3f\n", layer, landing / due,
-                run.solver->clock().friction_loss / due, e.kinetic / due);
+                run.solver->clock().budget.friction_loss / due, e.kinetic / due);
     EXPECT_NEAR(landing, due, 0.1 * due);
     EXPECT_LT(e.kinetic, 0.01 * due);
   }
@@ -234,10 +234,11 @@ TEST_P(Separated, a_slide_on_even_ground_lands_on_nothing) {
   o.initial_velocity = {8, 0, -4};
   const Run run(d, o, GetParam(), 2);
   const Clock clock = run.solver->clock();
-  std::printf("  friction %.3g J, landing %.4f of it\n", clock.friction_loss, clock.landing_loss / clock.friction_loss);
-  EXPECT_LT(std::abs(clock.landing_loss), 0.03 * clock.friction_loss);
-  EXPECT_EQ(clock.holding_loss, 0);
-  EXPECT_NEAR(clock.drag_loss, 0, 1e-12);
+  std::printf("  friction %.3g J, landing %.4f of it\n", clock.budget.friction_loss,
+              clock.budget.landing_loss / clock.budget.friction_loss);
+  EXPECT_LT(std::abs(clock.budget.landing_loss), 0.03 * clock.budget.friction_loss);
+  EXPECT_EQ(clock.budget.holding_loss, 0);
+  EXPECT_NEAR(clock.budget.drag_loss, 0, 1e-12);
 }
 
 TALUS_IN_EACH_PLACE(Separated);

@@ -26,10 +26,10 @@ BatchReport batch_at(double time, float rate, float speed) {
   BatchReport batch;
   batch.clock.time = time;
   batch.clock.step = 17;
-  batch.clock.courant = 0.5;
-  batch.clock.largest_step = 1;
-  atomic_max_positive(&batch.clock.rate_bits, rate);
-  atomic_max_positive(&batch.clock.speed_bits, speed);
+  batch.clock.control.courant = 0.5;
+  batch.clock.control.longest = 1;
+  atomic_max_positive(&batch.clock.control.rate_bits, rate);
+  atomic_max_positive(&batch.clock.control.speed_bits, speed);
   return batch;
 }
 
@@ -84,7 +84,7 @@ TEST_F(WatchedSteps, that_are_implicit_and_too_short_end_the_run) {
   batch.stats.newton = 3;
   batch.clock.step_size = 1e-12;
   EXPECT_NE(fault_of_step(watch, batch).mend.find("step_s"), std::string::npos);
-  batch.clock.halt = at_event;  // cut by an event, not by need
+  batch.clock.alarms.halt = at_event;  // cut by an event, not by need
   EXPECT_EQ(fault_of_step(watch, batch).what, "");
 }
 

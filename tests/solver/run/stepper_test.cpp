@@ -28,7 +28,7 @@ TEST(Stepper, meets_events_and_knows_its_step_over_the_cfl_step) {
     stepper.begin(first_state(scene, make_settings(o, scene.grid).common));
     EXPECT_TRUE(stepper.begun());
     BatchReport batch;
-    while (batch.clock.halt != at_event) batch = stepper.advance(0.02);
+    while (batch.clock.alarms.halt != at_event) batch = stepper.advance(0.02);
     EXPECT_EQ(stepper.time(), 0.02);
     EXPECT_EQ(stepper.solver().clock().time, 0.02);
     EXPECT_GT(stepper.over_cfl(), 0);

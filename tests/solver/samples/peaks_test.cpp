@@ -41,7 +41,7 @@ class SamplePeaks : public InEachPlace {
     EXPECT_GE(packing.largest, packing.p99);
     expect_below_fall(scene, state.maps.peak_speed);
     const auto largest = [](const std::vector<double>& map) { return *std::max_element(map.begin(), map.end()); };
-    return {static_cast<double>(positive_from_bits(state.clock.fastest_bits)), largest(state.maps.peak_speed),
+    return {static_cast<double>(positive_from_bits(state.clock.control.fastest_bits)), largest(state.maps.peak_speed),
             largest(state.maps.peak_pressure)};
   }
 

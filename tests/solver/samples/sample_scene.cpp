@@ -62,9 +62,9 @@ AfterStep after_step(const SampleRun& run, const SolverState& state, double turb
   SolveOptions options = run.sample().options;
   options.base.turbulence = turbulence;
   const auto solver = resume_solver(run.scene(), options, on, state);
-  const double step = 0.99 * share * state.clock.courant / positive_from_bits(state.clock.rate_bits);
+  const double step = 0.99 * share * state.clock.control.courant / positive_from_bits(state.clock.control.rate_bits);
   solver->set_next_event(state.clock.time + step);
-  while (solver->advance().clock.halt != at_event) {
+  while (solver->advance().clock.alarms.halt != at_event) {
   }
   return {solver->energies().momentum, solver->clock().time - state.clock.time};
 }
@@ -122,11 +122,11 @@ void SampleRun::run_to(double time) {
   for (;;) {
     const BatchReport batch = solver_->advance();
     left_ += batch.outflow_volume;
-    if (batch.clock.halt == failed) {
-      ADD_FAILURE() << "point " << batch.clock.failed_point << " failed at " << batch.clock.time << " s";
+    if (batch.clock.alarms.halt == failed) {
+      ADD_FAILURE() << "point " << batch.clock.alarms.failed_point << " failed at " << batch.clock.time << " s";
       return;
     }
-    if (batch.clock.halt == at_event) return;
+    if (batch.clock.alarms.halt == at_event) return;
   }
 }
 

@@ -348,7 +348,8 @@ TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it)
   EXPECT_TRUE(fault_with([](Checkpoint& c) {
                 c.state.contacts.force = {1, 2, 3};
               }).starts_with(no_fit + "force has 3"));
-  EXPECT_TRUE(fault_with([](Checkpoint& c) { c.state.clock.halt = 9; }).starts_with(no_fit + "its clock stands at"));
+  EXPECT_TRUE(
+      fault_with([](Checkpoint& c) { c.state.clock.alarms.halt = 9; }).starts_with(no_fit + "its clock stands at"));
   EXPECT_TRUE(fault_with([](Checkpoint& c) {
                 c.state.points.cell[0][0] = -1;
               }).starts_with(no_fit + "1 of its points are outside, and its clock counts 0)"));

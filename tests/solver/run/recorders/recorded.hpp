@@ -20,7 +20,7 @@ RunHistory recorded(const Domain& d, const SolveOptions& o, On on, double end, d
     for (bool on_the_way = row > 0; on_the_way;) {
       const BatchReport batch = solver->advance();
       counted.outflow_volume += batch.outflow_volume;
-      on_the_way = batch.clock.halt != at_event && batch.clock.halt != failed;
+      on_the_way = batch.clock.alarms.halt != at_event && batch.clock.alarms.halt != failed;
     }
     history.record({.time = row * interval,
                     .clock = solver->clock(),
