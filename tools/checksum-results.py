@@ -109,6 +109,32 @@ VARIANTS = {
     "gravity-loading": ("gravity_loading_steps = 4", "", {}),
     "initial-velocity": ("initial_velocity_m_s = [-2.0, 0.5, 0.0]", "", {}),
     "fine-layers": ("", "", {"layer": 0.5}),
+    "separation-none": ("", '[solve.base]\nseparation = "none"\n', {"slope": 0.8}),
+    "column-implicit": ('integrator = "column-implicit"', "", {"layer": 0.5}),
+    "column-implicit-single": ('integrator = "column-implicit"\nprecision = "single"\nshape = "gimp"', "", {}),
+    "column-implicit-budget": ('integrator = "column-implicit"\nenergy_budget = true\ndamping = 0.1', "", {}),
+    "column-implicit-musl": ('integrator = "column-implicit"\nstress_update = "musl"', "", {}),
+    "column-implicit-points": (
+        'integrator = "column-implicit"\nmapping = "cartesian"\nground_contact = "points"',
+        "",
+        {},
+    ),
+    "column-implicit-walls": (
+        'integrator = "column-implicit"',
+        '[[solve.wall]]\naxis = "x"\nposition_m = 10.0\nkind = "frictional"\nfriction_angle_deg = 25.0\n'
+        '[[solve.wall]]\naxis = "y"\nposition_m = 5.0\nto_s = 0.4\n',
+        {},
+    ),
+    "column-implicit-samosat": (
+        'integrator = "column-implicit"',
+        '[solve.base]\nlaw = "samosat"\nminimum_shear_Pa = 100.0\nseparation = "thin"\n',
+        {"slope": 0.8},
+    ),
+    "column-implicit-pouliquen": (
+        'integrator = "column-implicit"',
+        '[solve.base]\nlaw = "pouliquen"\nlayer_length_m = 0.5\n',
+        {},
+    ),
     "newmark": ('integrator = "newmark"', "", {}),
     "newmark-single": ('integrator = "newmark"\nprecision = "single"', "", {}),
     "newmark-gimp": ('integrator = "newmark"\nshape = "gimp"', "", {}),
