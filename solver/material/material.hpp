@@ -3,6 +3,10 @@
 // Materials as kernels see them, and what their laws make of a point: stress, energy, the state after a step.
 #pragma once
 
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+
 #include "solver/material/law.hpp"
 
 namespace talus {
@@ -86,34 +90,45 @@ struct Materials {
   /// The density of point p [kg/m3].
   TALUS_HD Real density(const int* which, int p) const { return which ? list[which[p]].density : list[0].density; }
 
-  /// Whether every material is of this law.
-  template <class Law>
-  bool all_of() const {
+  /// Whether the laws of all materials are in a list.
+  template <class... Known>
+  bool all_in(LawList<Known...>) const {
     for (const Material<Real, Laws>& m : list) {
-      if (m.model != model_of<Law, Laws>) return false;
+      if (!((m.model == model_of<Known, Laws>) || ...)) return false;
     }
     return true;
   }
-  /// The same materials as kernels see them that know this law alone, which must be that of all of them.
-  template <class Law>
-  Materials<Real, LawList<Law>> only() const {
-    Materials<Real, LawList<Law>> alone;
+  /// The same materials for kernels of the laws in a list, which must hold those of all of them.
+  template <class... Known>
+  Materials<Real, LawList<Known...>> only(LawList<Known...>) const {
+    Materials<Real, LawList<Known...>> some;
     for (int n = 0; n < most_materials; ++n) {
-      static_cast<Elasticity<Real>&>(alone.list[n]) = list[n];
-      alone.list[n].template numbers_of<Law>() = list[n].template numbers_of<Law>();
+      Material<Real, LawList<Known...>>& m = some.list[n];
+      static_cast<Elasticity<Real>&>(m) = list[n];
+      ((m.template numbers_of<Known>() = list[n].template numbers_of<Known>()), ...);
+      list[n].with_law([&](auto law, const auto&) {
+        using Law = decltype(law);
+        if constexpr ((std::is_same_v<Law, Known> || ...)) m.model = model_of<Law, LawList<Known...>>;
+      });
     }
-    return alone;
+    return some;
   }
 };
 
-/// This function calls run(materials) for a kernel that asks the law at every point: with Drucker-Prager alone where a
-/// scene has no other, so that no other law costs it registers, else with all laws.
-template <class Real, class Run>
+/// The sets of laws that kernels are compiled for, in the order in which they are tried; the last one holds all laws.
+/// Kernels of few laws take fewer registers. Each set adds the kernels of a step once more.
+using CompiledLaws = std::tuple<LawList<DruckerPrager>, MaterialLaws>;
+
+/// This function calls run(materials) for kernels that evaluate the law at every point, with the first of the compiled
+/// sets that holds the laws of all materials.
+template <std::size_t set = 0, class Real, class Run>
 void with_laws_of(const Materials<Real>& all, const Run& run) {
-  if (all.template all_of<DruckerPrager>()) {
-    run(all.template only<DruckerPrager>());
-  } else {
+  if constexpr (set + 1 == std::tuple_size_v<CompiledLaws>) {
     run(all);
+  } else {
+    constexpr std::tuple_element_t<set, CompiledLaws> laws;
+    if (all.all_in(laws)) return run(all.only(laws));
+    with_laws_of<set + 1>(all, run);
   }
 }
 

@@ -301,6 +301,35 @@ TEST(Materials, that_hold_tension_are_the_elastic_ones_and_sand_with_a_tension_c
 }
 
 /// A lone point opens by the same rate for ever: its gradient is that of its own affine velocity.
+TEST(Materials, go_to_the_first_compiled_set_that_holds_their_laws) {
+  Materials<double> all;
+  const auto laws = [&] {
+    int count = 0;
+    with_laws_of(all, [&]<class Laws>(const Materials<double, Laws>&) { count = Laws::count; });
+    return count;
+  };
+  for (Material<double>& m : all.list) m.model = model_of<DruckerPrager>;
+  EXPECT_EQ(laws(), 1);
+  all.list[1].model = model_of<Hencky>;
+  EXPECT_EQ(laws(), MaterialLaws::count);
+}
+
+TEST(Materials, keep_laws_and_numbers_in_a_set_of_some_laws) {
+  Materials<double> all;
+  for (Material<double>& m : all.list) m.model = model_of<DruckerPrager>;
+  all.list[1].model = model_of<Hencky>;
+  all.list[1].density = 1500;
+  all.list[0].numbers_of<DruckerPrager>().tension = 7;
+  using Two = LawList<Hencky, DruckerPrager>;
+  ASSERT_TRUE(all.all_in(Two{}));
+  EXPECT_FALSE(all.all_in(LawList<DruckerPrager>{}));
+  const Materials<double, Two> some = all.only(Two{});
+  EXPECT_EQ(some.list[1].model, (model_of<Hencky, Two>));
+  EXPECT_EQ(some.list[1].density, 1500);
+  EXPECT_EQ(some.list[0].model, (model_of<DruckerPrager, Two>));
+  EXPECT_EQ(some.list[0].numbers_of<DruckerPrager>().tension, 7);
+}
+
 TEST(DruckerPrager, lone_grain_that_opens_for_ever_keeps_a_state) {
   const auto material = sand();
   MaterialState<double> state;
