@@ -217,11 +217,7 @@ template <class Real, class Shape>
 std::unique_ptr<Solver> make_implicit_solver(const Scene& scene, const IntegratorSettings& settings,
                                              const ImplicitControls& controls, const AnyDevice& device,
                                              const SolverState& state) {
-#if TALUS_FOR_GPU
-  if (device.is_gpu())
-    return std::make_unique<ImplicitSolver<Real, GpuDevice, Shape>>(device.gpu(), scene, settings, controls, state);
-#endif
-  return std::make_unique<ImplicitSolver<Real, CpuDevice, Shape>>(device.cpu(), scene, settings, controls, state);
+  return make_solver_on<ImplicitSolver, Real, Shape>(device, scene, settings, controls, state);
 }
 
 }  // namespace talus::solver

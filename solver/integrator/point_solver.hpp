@@ -3,6 +3,8 @@
 // What every integrator has: the points, the grid, the clock and the maps, and how they are read.
 #pragma once
 
+#include <memory>
+
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/integrator/device_clock.hpp"
 #include "solver/integrator/device_loads.hpp"
@@ -15,6 +17,7 @@
 #include "solver/integrator/solver.hpp"
 #include "solver/integrator/surroundings.hpp"
 #include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/any_device.hpp"
 #include "solver/parallel/atomics.hpp"
 #include "solver/parallel/recording.hpp"
 
@@ -183,5 +186,14 @@ class PointSolver : public Solver {
   bool measured_ = false;        ///< energies and packing are known for the points as they are
   MotionMaps<Real, Device, Shape> motion_;
 };
+
+/// A solver of a class template on the device that is asked for.
+template <template <class, class, class> class SolverOn, class Real, class Shape, class... Arguments>
+std::unique_ptr<Solver> make_solver_on(const AnyDevice& device, const Arguments&... arguments) {
+#if TALUS_FOR_GPU
+  if (device.is_gpu()) return std::make_unique<SolverOn<Real, GpuDevice, Shape>>(device.gpu(), arguments...);
+#endif
+  return std::make_unique<SolverOn<Real, CpuDevice, Shape>>(device.cpu(), arguments...);
+}
 
 }  // namespace talus::solver

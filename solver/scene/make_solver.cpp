@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "solver/column_implicit/make_column_implicit_solver.hpp"
 #include "solver/explicit/make_explicit_solver.hpp"
 #include "solver/implicit/make_implicit_solver.hpp"
 #include "solver/integrator/scene.hpp"
@@ -46,9 +47,10 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& 
                                       const SolverState& state) {
   const auto of = [&]<class Real>(Real) {
     return with_shape(settings.common.shape, [&]<class Shape>(Shape) {
-      return abilities_of(settings.integrator).obey_cfl
-                 ? make_explicit_solver<Real, Shape>(scene, settings.common, device, state)
-                 : make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
+      const StepAbilities steps = abilities_of(settings.integrator);
+      if (steps.solve_columns) return make_column_implicit_solver<Real, Shape>(scene, settings.common, device, state);
+      if (steps.obey_cfl) return make_explicit_solver<Real, Shape>(scene, settings.common, device, state);
+      return make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
     });
   };
   return settings.precision == Precision::single_ ? of(float{}) : of(double{});

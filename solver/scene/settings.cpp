@@ -94,7 +94,7 @@ double transfer_time_of(const SolveOptions& o, const GridShape& grid) {
 
 SolverSettings make_settings(const SolveOptions& options, const GridShape& grid) {
   return {.precision = options.precision,
-          .integrator = options.integrator,
+          .integrator = options.flow_integrator(),
           .common = make_common(options, grid),
           .implicit = make_implicit_controls(options)};
 }

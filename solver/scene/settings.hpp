@@ -17,7 +17,7 @@ namespace talus::solver {
 /// The settings that a solver is made of, beside its scene and state.
 struct SolverSettings {
   Precision precision = Precision::double_;
-  Integrator integrator = Integrator::explicit_;  ///< automatic: explicit, until a change between the two names one
+  Integrator integrator = Integrator::explicit_;  ///< never automatic
   IntegratorSettings common;
   ImplicitControls implicit;  ///< looked at by implicit integrators
 };

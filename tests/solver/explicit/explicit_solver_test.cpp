@@ -1,32 +1,36 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How many explicit steps are taken at a time.
+// A solver of explicit steps as it is made for a precision and a shape: a body far above the ground falls freely.
+#include "solver/explicit/make_explicit_solver.hpp"
+
 #include "solver/explicit/explicit_solver.hpp"
-
-#include <gtest/gtest.h>
-
-#include "solver/explicit/column_contact.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
-#include "tests/solver/scenes.hpp"
+#include "solver/scene/settings.hpp"
+#include "tests/solver/free_fall.hpp"
 
 namespace talus::solver::testing {
 namespace {
 
-// A signal waits for the end of a batch.
-TEST(ExplicitSolver, takes_one_step_at_a_time_on_a_cpu) {
-  Domain domain = ground(12, 12, 10, 5, [](double, double) { return 0.0; });
-  fill(domain, {40, 80, 40, 80, 0, 5});
-  const SolveOptions options;
-  const Scene scene = make_scene(domain, options);
-  const auto solver = make_solver(scene, options, On::cpu);
-  solver->set_next_event(10);
-  for (int step = 1; step <= 3; ++step) {
-    const BatchReport report = solver->advance();
-    EXPECT_EQ(report.clock.step, step);
-    EXPECT_TRUE(report.can_be_saved);
+class ExplicitSolvers : public InEachPlace {
+ protected:
+  template <class Real, class Shape>
+  static void fall(On on, double rounding) {
+    SolveOptions o;
+    o.shape = kind_of<Shape>;
+    const Scene scene = falling_body(o);
+    const IntegratorSettings settings = make_settings(o, scene.grid).common;
+    const auto solver =
+        make_explicit_solver<Real, Shape>(scene, settings, make_device(on), first_state(scene, settings));
+    expect_free_fall(*solver, scene, rounding);
   }
+};
+
+// Every step rounds velocities once in the precision of the points; there are some hundred of them.
+TEST_P(ExplicitSolvers, let_a_body_fall_freely_in_double_precision) {
+  fall<double, Linear>(GetParam(), 1e-12);
+  fall<double, Quadratic>(GetParam(), 1e-12);
 }
+TEST_P(ExplicitSolvers, let_a_body_fall_freely_in_single_precision) { fall<float, Gimp>(GetParam(), 1e-4); }
+TALUS_IN_EACH_PLACE(ExplicitSolvers);
 
 }  // namespace
 }  // namespace talus::solver::testing

@@ -38,21 +38,21 @@ struct Updated {
   void update() {
     const MapView maps{{thickness.data(), speed.data(), pressure.data(), arrival.data()}, 0};
     for_each_column<block_columns>(CpuDevice::make(), 4,
-                                   UpdateColumns<double, content, counts>{.grid = grid.view(),
-                                                                          .active = grid.active.data(),
-                                                                          .clock = &clock,
-                                                                          .nodes = nodes.data(),
-                                                                          .forces = forces.data(),
-                                                                          .gravity = {{0, 0, -10}, gravity_ramp},
-                                                                          .walls = walls,
-                                                                          .friction = friction,
-                                                                          .full_base = 1e3,
-                                                                          .damping = damping,
-                                                                          .columns = columns,
-                                                                          .pressed = pressed.data(),
-                                                                          .density = {2000, nullptr},
-                                                                          .maps = maps,
-                                                                          .motion = nullptr});
+                                   UpdateColumns<double, content, counts>{{.grid = grid.view(),
+                                                                           .active = grid.active.data(),
+                                                                           .clock = &clock,
+                                                                           .gravity = {{0, 0, -10}, gravity_ramp},
+                                                                           .walls = walls,
+                                                                           .friction = friction,
+                                                                           .full_base = 1e3,
+                                                                           .columns = columns,
+                                                                           .pressed = pressed.data(),
+                                                                           .density = {2000, nullptr},
+                                                                           .maps = maps,
+                                                                           .motion = nullptr},
+                                                                          nodes.data(),
+                                                                          forces.data(),
+                                                                          damping});
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How often a device sorts its points.
-#include "solver/explicit/sort_intervals.hpp"
+#include "solver/integrator/sort_intervals.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,8 @@
 // a column (T24).
 #pragma once
 
+#include <type_traits>
+
 #include "solver/boundary/base_friction.hpp"
 #include "solver/state/clock.hpp"
 
@@ -41,6 +43,7 @@ struct GivenImpulses {
 /// signs. `contact` is what bed and walls take, friction along the bed a part of it. And what the bed gave along its
 /// normal, and bed and walls in all [N s].
 struct ColumnLosses {
+  static constexpr bool counted = true;
   double contact = 0, friction = 0, pressed = 0, damping = 0, transfer = 0, shaking = 0, reaction[3] = {0, 0, 0};
 
   TALUS_HD void operator+=(const ColumnLosses& o) {
@@ -89,5 +92,14 @@ struct ColumnLosses {
     for (int a = 0; a < 3; ++a) atomic_add(&clock.budget.reaction[a], reaction[a]);
   }
 };
+
+/// No losses, where none are counted.
+struct NoLosses {
+  static constexpr bool counted = false;
+  TALUS_HD void operator+=(const NoLosses&) {}
+};
+/// The losses of a kernel that counts them or does not.
+template <bool counts>
+using LossesIf = std::conditional_t<counts, ColumnLosses, NoLosses>;
 
 }  // namespace talus

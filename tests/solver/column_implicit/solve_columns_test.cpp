@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/explicit/solve_columns.hpp"
+#include "solver/column_implicit/solve_columns.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,24 +56,24 @@ struct SolvedColumn {
   void solve() {
     const MapView maps{{thickness.data(), speed.data(), pressure.data(), arrival.data()}, 0};
     for_each(CpuDevice::make(), 4 * block_columns,
-             SolveColumns<double>{.grid = grid.view(),
-                                  .active = grid.active.data(),
-                                  .clock = &clock,
-                                  .nodes = nodes.data(),
-                                  .forces = forces.data(),
-                                  .mobilities = mobilities.data(),
-                                  .gravity = {gravity},
-                                  .walls = walls,
-                                  .friction = friction,
-                                  .full_base = 1e3,
-                                  .damping = 0,
-                                  .kappa = kappa,
-                                  .softer = softer,
-                                  .columns = {},
-                                  .pressed = nullptr,
-                                  .density = {2000, nullptr},
-                                  .maps = maps,
-                                  .motion = nullptr});
+             SolveColumns<double>{{.grid = grid.view(),
+                                   .active = grid.active.data(),
+                                   .clock = &clock,
+                                   .gravity = {gravity},
+                                   .walls = walls,
+                                   .friction = friction,
+                                   .full_base = 1e3,
+                                   .columns = {},
+                                   .pressed = nullptr,
+                                   .density = {2000, nullptr},
+                                   .maps = maps,
+                                   .motion = nullptr},
+                                  nodes.data(),
+                                  forces.data(),
+                                  mobilities.data(),
+                                  0,
+                                  kappa,
+                                  softer});
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How an explicit step begins, and how a batch of them ends.
-#include "solver/explicit/ends_of_steps.hpp"
+#include "solver/integrator/ends_of_steps.hpp"
 
 #include <vector>
 

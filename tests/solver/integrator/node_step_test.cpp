@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the nodes' kernels of explicit and column-implicit steps share.
-#include "solver/explicit/node_step.hpp"
+#include "solver/integrator/node_step.hpp"
 
 #include <gtest/gtest.h>
 

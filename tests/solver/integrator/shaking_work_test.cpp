@@ -3,7 +3,7 @@
 // The work of the shaking on a node, among the other sums of a column.
 #include <gtest/gtest.h>
 
-#include "solver/explicit/node_step.hpp"
+#include "solver/integrator/node_step.hpp"
 
 namespace talus {
 namespace {

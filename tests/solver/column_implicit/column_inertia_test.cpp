@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What impulses on the nodes of a column do to all of them.
-#include "solver/explicit/column_inertia.hpp"
+#include "solver/column_implicit/column_inertia.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,6 +16,10 @@ namespace talus {
 template <class Real>
 struct Mobility {
   Real across = 0, along = 0;
+  /// The change of velocity across the bed by an impulse; see NodeMass.
+  TALUS_HD Real change(Real impulse) const { return impulse * across; }
+  /// Tangential over normal mobility [-].
+  TALUS_HD Real mobility_ratio() const { return along / across; }
 };
 
 /// The columns after their step, whose springs are alike in all directions.

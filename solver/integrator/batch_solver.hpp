@@ -1,0 +1,323 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What explicit and column-implicit integrators share: batches of steps on the device, sorts between them, and a step
+// in four verbs. Written once for both devices, both precisions and all shapes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "solver/integrator/at_home.hpp"
+#include "solver/integrator/column_contact.hpp"
+#include "solver/integrator/ends_of_steps.hpp"
+#include "solver/integrator/point_solver.hpp"
+#include "solver/integrator/remap_columns.hpp"
+#include "solver/integrator/scene.hpp"
+#include "solver/integrator/sort_intervals.hpp"
+#include "solver/parallel/algorithms.hpp"
+#include "solver/parallel/columns.hpp"
+#include "solver/parallel/recording.hpp"
+#include "solver/transfer/grid_to_particle.hpp"
+#include "solver/transfer/particle_to_grid.hpp"
+
+namespace talus::solver {
+
+inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
+
+/// An integrator whose steps are bounded by the CFL condition: clear, scatter, update, gather. Derived classes scatter
+/// and update the nodes; their constructors end with start().
+template <class Real, class Device, class Shape>
+class BatchSolver : public PointSolver<Real, Device, Shape> {
+  using Base = PointSolver<Real, Device, Shape>;
+
+ protected:
+  using Base::clock_, Base::device_, Base::dilatant_, Base::grid_, Base::loads_, Base::maps_, Base::materials_,
+      Base::motion_, Base::points_, Base::settings_, Base::shaking_, Base::surroundings_;
+
+ public:
+  /// The constructor takes whether waves across the layers bound the step; see PointSolver for the rest.
+  BatchSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state,
+              bool bound_by_layers)
+      : Base(device, scene, settings, state, needs(settings),
+             drift_between_sorts<Device>(settings.deterministic, has_company(device))),
+        recording_(device, Base::starts_with_others()),
+        bound_by_layers_(bound_by_layers),
+        columns_(device, surroundings_.bed(), settings, static_cast<double>(materials_.list[0].density), scene.grid) {}
+
+  /// The method makes a batch of steps on the device, or one step on a CPU; see Solver::advance().
+  BatchReport advance() override {
+    Clock clock = clock_.read();
+    clock.alarms.halt = clock.alarms.request = running;
+    clock_.write(clock);
+    walls_ = this->template set_walls<Real>(clock.time);
+    loads_now_ = loads_.upload(clock.time, clock.time);
+    if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
+    clock_.lend();
+    recording_.repeat(
+        steps_ahead(clock), [&] { step(); }, [&] { clock_.pass_in(); }, [&] { close(); });
+    BatchReport report;
+    clock = clock_.read();
+    int halt = clock.alarms.halt;
+    this->measured_ = halt == at_event && recording_.has_company();
+    if (halt == at_event && !recording_.has_company()) look_back(clock_.data());
+    if (halt == wants_sort) expected_ = clock.sorting.steps_since;
+    // A sort comes before an event of the same time (Clock::halt_where_due), whose records see who has left.
+    if (halt == wants_sort || (halt == at_event && clock.outflow.count > 0)) {
+      report.outflow_volume = clock.outflow.volume;
+      report.outflow_count = clock.outflow.count;
+      sort(clock.outflow.count);
+      clock.outflow = {};
+      clock.sorting = {.steps_since = 0, .steps_between = steps_between_sorts()};  // as in a run resumed here
+      clock.alarms.halt = clock.alarms.request = running;
+      report.sorted = true;
+      if (halt == wants_sort && clock.time >= clock.next_event) {
+        clock.halt_where_due();
+        halt = clock.alarms.halt;
+        look_back(nullptr);
+      }
+    }
+    clock_.write(clock);
+    report.can_be_saved = report.sorted || !Device::is_gpu;
+    report.clock = clock;
+    report.clock.alarms.halt = halt;
+    return report;
+  }
+
+  /// All that a checkpoint keeps. On a CPU that is enough to go on between two sorts; see Solver::state().
+  SolverState state() const override {
+    SolverState now = Base::state();
+    if (!Device::is_gpu && now.clock.sorting.steps_since > 0) {
+      const std::vector<std::uint64_t> keys = grid_.homes();  // of those who left at the sort as well, last
+      now.homes.assign(keys.begin(), keys.begin() + points_.count());
+    }
+    return now;
+  }
+
+  /// The method adds points; see Solver::add().
+  void add(const ParticleState& points, double rate) override {
+    points_.append(points);
+    Clock clock = clock_.read();
+    sort(0);
+    clock.sorting = {.steps_since = 0, .steps_between = steps_between_sorts()};
+    this->note_rate(clock, rate);
+    clock_.write(clock);
+  }
+
+  /// The memory by its users; see Solver::memory().
+  MemoryShares memory() const override {
+    MemoryShares shares = Base::memory();
+    shares.emplace_back("nodes", node_bytes());
+    columns_.list_memory(shares);
+    return shares;
+  }
+
+ protected:
+  /// The method gives storage to so many nodes beside their mass and momentum.
+  virtual void resize_nodes(std::size_t count) = 0;
+  /// The method scatters the points and updates the nodes.
+  virtual void move_nodes() = 0;
+  /// The memory of the nodes [bytes].
+  virtual std::size_t node_bytes() const { return nodes_.bytes() + forces_.bytes(); }
+
+  /// The method sorts the points of the state that the steps begin with.
+  void start(const SolverState& state) {
+    Clock clock = clock_.read();
+    clock.accelerated = 0;
+    clock.sorting.steps_between = steps_between_sorts();
+    if (state.homes.empty()) clock.outflow = {};  // a sort drops those who have left
+    clock_.write(clock);
+    if (Device::is_gpu || state.homes.empty()) return sort(0);
+    points_.upload(at_home(state, grid_.shape().columns));
+    sort(0);
+    points_.upload(state.points);
+  }
+
+  /// The method scatters the points' mass and momentum, with forces to their own array where it asks for them.
+  template <Scatter what>
+  void scatter() {
+    const ProfilePhase<Device> phase(device_, "points to grid");
+    const auto run = [&]<class Laws>(const Materials<Real, Laws>& materials) {
+      scatter_points(
+          device_, points_.count(), grid_.groups(),
+          ParticleToGrid<Real, Shape, what, Laws>{grid_.view(), points_.view(), materials, clock_.data(), nodes_.data(),
+                                                  forces_.data(), loads_now_, settings_.transfer.affine, dilatant_});
+    };
+    if constexpr (what == Scatter::momentum) {
+      run(materials_);  // asks for no stress
+    } else {
+      with_laws_of(materials_, run);
+    }
+  }
+
+  /// The method makes the grid's part of a step: update_nodes() within what bed and contact points do to whole columns.
+  /// `changes` takes the changes of the nodes' velocity; null where the step keeps none.
+  template <class Inertia, class UpdateNodes>
+  void update(Vec4<Real>* changes, const Inertia& inertia, const UpdateNodes& update_nodes) {
+    const StepNodes<Real> at = step_nodes(changes);
+    this->measure_columns();
+    this->sum_motion(clock_.data());
+    columns_.measure(at, surroundings_.bed());
+    {
+      const ProfilePhase<Device> phase(device_, "grid");
+      update_nodes();
+    }
+    if (settings_.energy_budget) columns_.count_landing(at);
+    columns_.hold(at, walls_, true);
+    meet_surfaces(at, inertia, true);
+    columns_.slow(at, surroundings_.bed(), this->column_density());
+  }
+
+  /// The surroundings of the columns as the nodes' kernels see them.
+  ColumnBoundary<Real> boundary() {
+    const Vec3<double>& full = settings_.gravity.acceleration;
+    return {.grid = grid_.view(),
+            .active = grid_.active_list(),
+            .clock = clock_.data(),
+            .gravity = {{static_cast<Real>(full.x), static_cast<Real>(full.y), static_cast<Real>(full.z)},
+                        settings_.gravity.ramp},
+            .walls = walls_,
+            .friction = columns_.seen_by(surroundings_.bed()),
+            .full_base = static_cast<Real>(this->full_base()),
+            .columns = columns_.slowed(),
+            .pressed = columns_.pressed(),
+            .density = this->column_density(),
+            .maps = maps_.view(),
+            .motion = motion_.sums()};
+  }
+
+  Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
+
+ private:
+  static ParticleNeeds needs(const IntegratorSettings& settings) {
+    ParticleNeeds n = settings.needs;
+    n.remapped_velocity = settings.transfer.remaps_velocity;
+    return n;
+  }
+
+  /// The steps to start at once: as many as lead to the next event at their length now, or lay between the last two
+  /// sorts, and then a few at a time. Kernels launched after a halt return at once.
+  /// On a CPU each step is waited for, and a signal heard after it.
+  int steps_ahead(const Clock& clock) const {
+    if constexpr (!Device::is_gpu) return 1;
+    constexpr int few = 2;
+    const SortPolicy& sorting = clock.sorting;
+    const int to_sort =
+        std::min(std::max(expected_ - sorting.steps_since, few), sorting.steps_between - sorting.steps_since);
+    const double to_event = std::ceil((clock.next_event - clock.time) / clock.full_step());
+    return std::clamp(static_cast<int>(std::min<double>(to_sort, to_event)), 1, most_batch_steps);
+  }
+
+  /// The steps until the next sort, for the points there are.
+  int steps_between_sorts() const {
+    if constexpr (Device::is_gpu) return steps_between_sorts_on_gpu<Shape>(points_.count());
+    return cpu_steps_between_sorts;
+  }
+
+  /// The method ends a batch: it halts where something is due. With other runs it starts what an event asks for at
+  /// once, whether or not this is one: that saves a start of its own.
+  void close() {
+    for_each(device_, 1, CloseBatch{clock_.data()});
+    clock_.pass_out();
+    if (!recording_.has_company()) return;
+    look_back(clock_.data());
+    this->start_measures();
+  }
+
+  /// The method records the maps of speed and pressure where the clock has halted at an event, or at once where it is
+  /// null.
+  void look_back(const Clock* clock) {
+    this->measure_columns();
+    this->sum_motion(clock);
+    this->record_motion();
+  }
+
+  /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
+  void step() {
+    clear(true);
+    move_nodes();
+    if (!settings_.transfer.remaps_velocity) return gather<Gather::all>();
+    gather<Gather::motion>();
+    clear(false);
+    scatter<Scatter::momentum>();
+    remap();
+    gather<Gather::deformation>();
+  }
+
+  void clear(bool opens) {
+    const ProfilePhase<Device> phase(device_, "clear the grid");
+    const int count = grid_.nodes();
+    for_each(
+        device_, std::max(count, 1),
+        BeginStep<Real>{clock_.data(), nodes_.data(), opens ? forces_.data() : nullptr, count, opens, shaking_.view()});
+  }
+
+  /// The method makes velocities of the points' new momentum.
+  void remap() {
+    const StepNodes<Real> at = step_nodes(nullptr);
+    ColumnBoundary<Real> around = boundary();
+    if (!around.friction.holds()) around.friction.law = FrictionLaw::none;
+    around.columns = {};
+    {
+      const ProfilePhase<Device> phase(device_, "grid");
+      for_each_column<block_columns>(device_, at.blocks, RemapColumns<Real>{around, nodes_.data()});
+    }
+    columns_.hold(at, walls_, false);
+    meet_surfaces(at, NodeInertia<Device>(device_), false);
+  }
+
+  StepNodes<Real> step_nodes(Vec4<Real>* changes) {
+    return {.grid = grid_.view(),
+            .active = grid_.active_list(),
+            .blocks = grid_.active_blocks(),
+            .nodes = {nodes_.data(), changes},
+            .step = {clock_.data(), 0, {settings_.gravity.acceleration, settings_.gravity.ramp}}};
+  }
+
+  /// The method lets the nodes meet obstacles, and ground between the nodes (T12a). What is mapped back a second time
+  /// (not `first`) is merely kept from running through them.
+  template <class Inertia>
+  void meet_surfaces(const StepNodes<Real>& at, const Inertia& inertia, bool first) {
+    if (!surroundings_.contact().on()) return;
+    const ProfilePhase<Device> phase(device_, "contact");
+    surroundings_.impulses().run(surroundings_.contact(), at.grid, at.nodes, grid_.nodes(), inertia,
+                                 {clock_.data(), 0, first, first});
+  }
+
+  template <Gather part>
+  void gather() {
+    const ProfilePhase<Device> phase(device_, "grid to points");
+    const Vec4<Real>* const changes = settings_.transfer.time > 0 ? forces_.data() : nullptr;
+    const auto run = [&]<bool budget, class Laws>(const Materials<Real, Laws>& materials) {
+      for_each(device_, points_.count(),
+               GridToParticle<Real, Shape, part, budget, Laws>{grid_.view(), points_.view(), materials, clock_.data(),
+                                                               nodes_.data(), changes, grid_.home(),
+                                                               settings_.transfer.affine, dilatant_, bound_by_layers_});
+    };
+    if (settings_.energy_budget) {
+      run.template operator()<true>(materials_);
+    } else if constexpr (part == Gather::motion) {
+      run.template operator()<false>(materials_);  // asks for no stress
+    } else {
+      with_laws_of(materials_, [&](const auto& materials) { run.template operator()<false>(materials); });
+    }
+  }
+
+  void sort(int outflow_count) {
+    const ProfilePhase<Device> phase(device_, "sort and storage");
+    recording_.forget();
+    this->fit(outflow_count);
+    nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
+    resize_nodes(static_cast<std::size_t>(grid_.nodes()));
+  }
+
+  Recording<Device> recording_;  ///< of a step
+  int expected_ = 32;            ///< steps between sorts
+  bool bound_by_layers_;
+  Walls<Real> walls_;
+  const Vec3<double>* loads_now_ = nullptr;
+  ColumnContact<Real, Device> columns_;
+};
+
+}  // namespace talus::solver
