@@ -139,7 +139,7 @@ TEST(YieldEdge, tangent_is_the_derivative_along_the_way_ahead) {
       Gradients random(12);
       const auto m = sand_at_yield<double>(dilatancy, apex);
       int out = 0, in = 0;
-      for (int n = 0; n < 200; ++n) {
+      for (int n = 0; n < 300; ++n) {
         const MaterialState<double> s = flowed(m, random);
         const Mat3<double> way = without_trace(random.draw<double>(1e-3));
         EXPECT_LT(error_ahead(m, s, way), 1e-3) << dilatancy << " deg, apex " << apex << ", state " << n;

@@ -193,9 +193,7 @@ TEST(SolveOptions, at_most_as_many_walls_as_kernels_hold) {
 
 TEST(SolveOptions, an_old_key_is_refused_with_the_new_one) {
   const std::string found = faults("[solve]\nflip_fraction = 0.95");
-  EXPECT_NE(found.find("r.toml:2:17: [solve] flip_fraction = 0.95 (transfer_time_s has taken its place). Write "
-                       "transfer_time_s instead"),
-            std::string::npos)
+  EXPECT_NE(found.find("r.toml:2:1: [solve] flip_fraction: no longer a key. Give transfer_time_s"), std::string::npos)
       << found;
 }
 
