@@ -54,7 +54,8 @@ RasterTags plain_tags(const Run& run, const std::string& quantity, const std::st
 
 std::vector<std::string> names_of_maps(const std::string& end) {
   std::vector<std::string> names{"maps/deposit_thickness_*" + end};
-  for (const MapField& field : map_fields) names.push_back(fmt::format("maps/{}{}", field.name, end));
+  for (const MapField& field : map_fields)
+    if (field.product.legend[0] != '\0') names.push_back(fmt::format("maps/{}{}", field.name, end));
   return names;
 }
 

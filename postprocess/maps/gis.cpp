@@ -126,7 +126,8 @@ class GisWriter : public Writer {
   std::string name() const override { return "QGIS project"; }
   std::vector<std::string> names() const override {
     auto files = names_of_maps(".qml");
-    files.insert(files.end(), {"maps/terrain.tif", "maps/sliding_surface.tif", "maps/outlines.gpkg", "maps/*.qgs"});
+    files.insert(files.end(), {"maps/terrain.tif", "maps/terrain.qml", "maps/sliding_surface.tif", "maps/outlines.gpkg",
+                               "maps/*.qgs"});
     return files;
   }
   std::vector<std::string> outdated() const override { return {}; }
