@@ -17,7 +17,7 @@ build=(
   # libraries, as cmake/dependencies.cmake looks for them
   libeigen3-dev libsuitesparse-dev libopenblas0-serial libtbb-dev libfmt-dev libspdlog-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev
-  libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev
+  libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev libssl-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
   libopenturns-dev
   libcairo2-dev fonts-dejavu-core zlib1g-dev

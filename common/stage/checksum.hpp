@@ -9,24 +9,29 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
+
+struct evp_md_ctx_st;  // EVP_MD_CTX of libcrypto
 
 namespace talus {
 
 /// SHA-256 (FIPS 180-4) of bytes that come in parts.
 class Sha256 {
  public:
+  static constexpr std::size_t read_at_once = std::size_t{1} << 20;  ///< bytes of a file read in one block
+
   Sha256();
-  /// The method takes the next bytes.
   void add(std::span<const std::uint8_t> bytes);
-  /// The digest of all bytes so far, in hex; nothing may be added after it.
+  /// Digest of all bytes added, in hex. Call it once, after the last add().
   std::string digest();
 
  private:
-  std::uint32_t state_[8];
-  std::uint8_t rest_[64] = {};  ///< bytes that do not fill a block yet
-  std::uint64_t length_ = 0;    ///< of all bytes so far
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
 /// This function adds the seal to a file that is written and closed. It throws the DataError of a file that cannot be

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t seal_size = 128;
-constexpr std::size_t read_at_once = std::size_t{1} << 16;       // small enough that its memory is used again and again
 constexpr std::string_view mark = "\n# talus-seal 1, SHA-256 ";  // its first byte ends what would be text before it
 
 struct SealLine {
@@ -45,7 +44,7 @@ std::optional<SealLine> seal_in(const std::string& end) {
 /// The digest of the first bytes of a file; none where they cannot be read.
 std::optional<std::string> digest_of(std::istream& stream, std::uint64_t length) {
   Sha256 sum;
-  std::vector<std::uint8_t> part(read_at_once);
+  std::vector<std::uint8_t> part(std::min<std::uint64_t>(length, Sha256::read_at_once));
   while (length > 0) {
     const auto bytes = static_cast<std::size_t>(std::min<std::uint64_t>(length, part.size()));
     if (!stream.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(bytes))) return {};
