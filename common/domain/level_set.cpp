@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <ios>
+#include <new>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 #include "common/domain/write_grids.hpp"
 #include "common/error.hpp"
 #include "common/stage/checksum.hpp"
-#include "common/stage/child_reading.hpp"
+#include "common/stage/crash_report.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
@@ -70,6 +70,9 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
     refuse_file(file, "cannot be read", error.what(), write_it);
   } catch (const std::ios_base::failure& error) {
     refuse_file(file, "cannot be read", error.what(), write_it);
+  } catch (const std::bad_alloc&) {
+    refuse_file(file, "cannot be read", "it asks for more memory than there is: it is damaged, or far too fine",
+                write_it);
   }
 }
 
@@ -153,7 +156,7 @@ double area_of(const std::vector<Vector>& places, const std::vector<openvdb::Vec
               "Check its unit, which must be the metre, and its place");
 }
 
-BodySurface read_here(const Wanted& wanted) {
+BodySurface read_surface(const Wanted& wanted) {
   openvdb::initialize();
   const fs::path& file = wanted.file;
   const std::array<double, 3>& largest = wanted.largest;
@@ -197,48 +200,12 @@ BodySurface read_here(const Wanted& wanted) {
   return surface;
 }
 
-/// A surface as bytes, from one process of this program to another.
-std::string bytes_of(const BodySurface& surface) {
-  std::string bytes(reinterpret_cast<const char*>(surface.facets.data()), surface.facets.size() * sizeof(Facet));
-  bytes.append(reinterpret_cast<const char*>(&surface.volume), sizeof surface.volume);
-  bytes.append(reinterpret_cast<const char*>(&surface.low), sizeof surface.low);
-  bytes.append(reinterpret_cast<const char*>(&surface.high), sizeof surface.high);
-  return bytes;
-}
-
-BodySurface surface_of(const fs::path& file, const std::string& bytes) {
-  BodySurface surface;
-  constexpr std::size_t tail = sizeof surface.volume + sizeof surface.low + sizeof surface.high;
-  if (bytes.size() < tail || (bytes.size() - tail) % sizeof(Facet) != 0)
-    refuse_file(file, "cannot be read", "reading it broke off", write_it);
-  surface.facets.resize((bytes.size() - tail) / sizeof(Facet));
-  const char* at = bytes.data();
-  const auto take = [&](void* to, std::size_t size) {
-    if (size > 0) std::memcpy(to, at, size);
-    at += size;
-  };
-  take(surface.facets.data(), surface.facets.size() * sizeof(Facet));
-  take(&surface.volume, sizeof surface.volume);
-  take(&surface.low, sizeof surface.low);
-  take(&surface.high, sizeof surface.high);
-  return surface;
-}
-
-const KnownChildReading level_set("level-set", [](const std::vector<std::string>& words) {
-  return bytes_of(
-      read_here({words.at(0), words.at(1), {std::stod(words.at(2)), std::stod(words.at(3)), std::stod(words.at(4))}}));
-});
-
 }  // namespace
 
 BodySurface read_level_set(const fs::path& file, const std::string& name, const std::array<double, 3>& largest) {
-  if (check_seal(file, "Run talus-preprocess again, or copy it again") || !fs::is_regular_file(file))
-    return read_here({file, name, largest});
-  const auto exactly = [](double number) { return fmt::format("{:.17g}", number); };
-  return surface_of(file, read_in_child({.name = "level-set",
-                                         .words = {name, exactly(largest[0]), exactly(largest[1]), exactly(largest[2])},
-                                         .file = file,
-                                         .mend = write_it}));
+  check_seal(file, "Run talus-preprocess again, or copy it again");
+  const WhileReading reading(file, write_it);  // OpenVDB crashes on some damaged files
+  return read_surface({file, name, largest});
 }
 
 void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies, double voxel) {

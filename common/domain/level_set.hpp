@@ -26,10 +26,9 @@ struct BodySurface {
 };
 
 /// The zero surface of the level set called `grid` in `file`; with an empty name, of the only one there is. Facets are
-/// no longer than `largest` along each axis [m]. A file without a seal (common/stage/checksum.hpp) is of another
-/// program and is read by a process of its own, for OpenVDB crashes on some broken ones. Throws DataError: no such file
-/// or grid, damaged, several grids and no name, not a level set, distances that are not finite, voxels without a size,
-/// no surface.
+/// no longer than `largest` along each axis [m]. OpenVDB crashes on some damaged files of other programs
+/// (common/stage/crash_report.hpp). Throws DataError: no such file or grid, damaged, several grids and no name, not a
+/// level set, distances that are not finite, voxels without a size, no surface.
 BodySurface read_level_set(const std::filesystem::path& file, const std::string& grid,
                            const std::array<double, 3>& largest);
 
