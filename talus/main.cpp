@@ -9,8 +9,8 @@
 
 #include "common/error.hpp"
 #include "common/recipe/shown_paths.hpp"
-#include "common/stage/child_reading.hpp"
 #include "common/stage/console.hpp"
+#include "common/stage/crash_report.hpp"
 #include "common/stage/stage.hpp"
 #include "talus/check.hpp"
 #include "talus/compare.hpp"
@@ -160,7 +160,7 @@ int guarded(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  serve_child_reading(argc, argv);
+  report_crashes("talus");
   try {
     return guarded(argc, argv);
   } catch (const Error& error) {

@@ -21,9 +21,6 @@ for target in "${targets[@]}"; do
   seen=$PWD/build-fuzz/seen/$target   # inputs that reached something new, kept from run to run
   mkdir -p "$findings" "$seen"
   rm -f "$findings"/*
-  for golden in tests/golden/"$target"-*; do
-    if [[ -f $golden ]]; then cp "$golden" "$seen"; fi
-  done
   leaks=1
   options=(-max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -max_len=262144 -artifact_prefix="$findings/")
   # Where a library reads the bytes first, its crashes are its own (programs read such files in a child): count, go on.

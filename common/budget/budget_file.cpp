@@ -17,7 +17,7 @@
 namespace talus {
 namespace {
 
-const EnsembleFileKind budget_kind{"talus budget", "an error budget", "Run talus-solve --budget again"};
+const EnsembleFileKind budget_kind{{"talus budget", "an error budget"}, "Run talus-solve --budget again"};
 
 constexpr const char* state_names[] = {"waiting", "done", "failed", "left out"};
 
@@ -79,10 +79,8 @@ BudgetRun read_run_of(const h5::File& file, const std::string& group) {
   if (file.has_attribute(group, "warnings")) run.warnings = lines_of(file.text(group, "warnings"));
   if (file.exists(group + "/accepted")) run.accepted = h5::read_facts(file, group + "/accepted");
   if (run.state != BudgetState::done) return run;
-  for (const ResultNumber& number : result_numbers) {
-    if (number.added && !file.has_attribute(group, number.name)) continue;
+  for (const ResultNumber& number : result_numbers)
     run.result.*(number.value) = h5::checked_number(file, group, number.name, h5::finite_or_none);
-  }
   const MapGrid grid = h5::read_grid(file, group);
   run.deposit = read_map_of(file, group + "/deposit_thickness", grid);
   run.peak_thickness = read_map_of(file, group + "/peak_thickness", grid);

@@ -52,9 +52,9 @@ struct Domain {
 /// DataError (disk full, not writable).
 void write_domain(const std::filesystem::path& file, const Domain& domain);
 
-/// Read it back; files of the format before as well (docs/reference/formats.md). Coordinates keep 1e-6 of a cell,
-/// volumes and heights are exact. Throws DataError: missing, truncated, changed since it was written, not a domain of
-/// this program, a mask "active" of another grid or not of whole blocks, numbers that cannot be (check_domain.hpp).
+/// Read it back. Coordinates keep 1e-6 of a cell, volumes and heights are exact. Throws DataError: missing, truncated,
+/// changed since it was written, not a domain of this program, a mask "active" of another grid or not of whole blocks,
+/// numbers that cannot be (check_domain.hpp).
 Domain read_domain(const std::filesystem::path& file);
 
 }  // namespace talus

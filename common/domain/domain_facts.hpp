@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// The provenance of a domain. Of a file with a seal no more than its head is read, once the seal has been checked.
+/// The provenance of a domain. Only the head of the file is read, once its seal has been checked.
 /// Throws DataError as read_domain() does.
 Facts domain_facts(const std::filesystem::path& file);
 

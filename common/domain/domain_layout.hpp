@@ -11,10 +11,8 @@
 
 namespace talus::layout {
 
-/// Raised when a reader of today would misread the file or miss something in it; the format before is read as well
-/// (docs/reference/formats.md). 5: sealed (common/stage/checksum.hpp). 4: the same without a seal.
-inline constexpr int format = 5;
-inline constexpr int oldest_format = 4;
+/// To be raised when a reader would misread a file or miss something in it.
+inline constexpr int format = 1;
 inline constexpr auto kind = "talus-domain";
 
 inline constexpr auto points = "points";
@@ -25,7 +23,7 @@ inline constexpr auto inside = "inside";
 inline constexpr auto active = "active";
 inline constexpr auto mask_h = "h_m";                 ///< of the background grid, in the metadata of "active"
 inline constexpr auto mask_h_z = "h_z_m";             ///< likewise
-inline constexpr auto places = "places";              ///< how many; files of earlier versions have no such entry
+inline constexpr auto places = "places";              ///< how many
 inline constexpr auto place_of = "place_of";          ///< numbered: the [[preprocess.place]] it is of
 inline constexpr auto place_name = "place_name";      ///< likewise
 inline constexpr auto place_points = "place_points";  ///< likewise, as text_of_points()

@@ -15,7 +15,7 @@
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
 #include "common/stage/checksum.hpp"
-#include "common/stage/child_reading.hpp"
+#include "common/stage/crash_report.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -41,20 +41,10 @@ struct Contents {
 
 /// Through a stream that throws at the end of the file: OpenVDB itself would go on with whatever it has.
 Contents read_all(const fs::path& file) {
-  if (!fs::exists(file)) refuse(file, "no such file", "", "Run talus-preprocess first, with the same --out");
-  require_plain(file);
-  if (fs::is_directory(file)) refuse(file, "cannot be read", "it is a folder", "Check the path");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream && errno == ENOMEM) throw std::bad_alloc();
   if (!stream) refuse(file, "cannot be read", std::generic_category().message(errno), "Check the path");
-  char magic[8] = {};
-  stream.read(magic, sizeof magic);
-  constexpr char of_openvdb[8] = {0x20, 0x42, 0x44, 0x56, 0, 0, 0, 0};
-  if (stream.gcount() == 8 && !std::equal(magic, magic + 8, of_openvdb))
-    refuse(file, "not an OpenVDB file", "its first bytes say so");
-  stream.clear();
-  stream.seekg(0);
   stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
   try {
     openvdb::io::Stream archive(stream, false);
@@ -62,7 +52,7 @@ Contents read_all(const fs::path& file) {
   } catch (const std::ios_base::failure&) {
     require_read(stream, file);
     refuse(file, "ends too early", "the file is truncated: its writing or copying was cut short", again);
-  } catch (const std::bad_alloc&) {  // of a sealed file: one without a seal is read in a child, which says so itself
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // OpenVDB throws its own and std:: kinds on bytes that make no sense
     refuse(file, "cannot be read", std::string("the file is damaged: ") + error.what(), again);
@@ -92,25 +82,18 @@ class Facts {
     return static_cast<int>(value);
   }
   std::string text(const std::string& name) const { return get<std::string>(name); }
-  bool has(const std::string& name) const { return static_cast<bool>(meta_[name]); }
 
  private:
   const fs::path& file_;
   const openvdb::MetaMap& meta_;
 };
 
-void check_kind(const fs::path& file, const openvdb::MetaMap& meta, bool sealed) {
+void check_kind(const fs::path& file, const openvdb::MetaMap& meta) {
   const auto kind = meta.getMetadata<openvdb::StringMetadata>("kind");
   if (!kind || kind->value() != layout::kind)
     refuse(file, "not a domain of talus-preprocess", "an OpenVDB file of another program");
-  const auto format = Facts(file, meta).count("format");
-  if (format < layout::oldest_format || format > layout::format)
-    refuse(
-        file, "its format is " + std::to_string(format),
-        "this program reads formats " + std::to_string(layout::oldest_format) + " to " + std::to_string(layout::format),
-        "Run the talus-preprocess of this version");
-  if (format == layout::format && !sealed)
-    refuse(file, "is damaged", "its checksum is missing: another program changed it, or its end is lost");
+  const auto format = Facts(file, meta).get<std::int64_t>("format");
+  if (format != layout::format) refuse_format(file, format, layout::format, "Run talus-preprocess again");
 }
 
 template <class Grid>
@@ -207,10 +190,10 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
   return points;
 }
 
-/// Lines and points under names; files of earlier versions have none.
+/// Lines and points under names.
 std::vector<DomainPlace> named_places(const fs::path& file, const Facts& facts) {
   std::vector<DomainPlace> places;
-  const std::size_t count = facts.has(layout::places) ? facts.count(layout::places) : 0;
+  const std::size_t count = facts.count(layout::places);
   for (std::size_t i = 0; i < count; ++i) {
     DomainPlace one{
         facts.text(layout::numbered(layout::place_of, i)), facts.text(layout::numbered(layout::place_name, i)), {}};
@@ -252,29 +235,20 @@ Domain assemble(const fs::path& file, const Contents& contents) {
   return domain;
 }
 
-Domain read_here(const fs::path& file, bool sealed) {
+}  // namespace
+
+Domain read_domain(const fs::path& file) {
+  if (!fs::exists(file)) refuse(file, "no such file", "", "Run talus-preprocess first, with the same --out");
+  require_seal(file, again);
   openvdb::initialize();
+  const WhileReading reading(file, again);
   const Contents contents = read_all(file);
-  check_kind(file, *contents.meta, sealed);
+  check_kind(file, *contents.meta);
   try {
     return assemble(file, contents);
   } catch (const openvdb::Exception& error) {
     refuse(file, "not a whole domain", error.what());
   }
-}
-
-const KnownChildReading trial("domain", [](const std::vector<std::string>& words) {
-  read_here(words.at(0), false);
-  return std::string();
-});
-
-}  // namespace
-
-Domain read_domain(const fs::path& file) {
-  const bool sealed = check_seal(file, again);
-  if (!sealed && fs::is_regular_file(file))  // OpenVDB crashes on some files that are not as they were written
-    read_in_child({.name = "domain", .words = {}, .file = file, .mend = again});
-  return read_here(file, sealed);
 }
 
 }  // namespace talus

@@ -128,7 +128,7 @@ openvdb::MetaMap metadata_of(const Domain& domain) {
   count("erodible", static_cast<std::size_t>(domain.erodible));
   for (std::size_t i = 0; i < domain.release_names.size(); ++i)
     text(layout::numbered("release_name", i), domain.release_names[i]);
-  if (!domain.places.empty()) count(layout::places, domain.places.size());
+  count(layout::places, domain.places.size());
   for (std::size_t i = 0; i < domain.places.size(); ++i) {
     text(layout::numbered(layout::place_of, i), domain.places[i].place);
     text(layout::numbered(layout::place_name, i), domain.places[i].name);

@@ -54,7 +54,6 @@ struct ResultNumber {
   const char* unit;  ///< in UDUNITS' words
   const char* meaning;
   double MemberResult::*value;
-  bool added = false;  ///< files of earlier versions lack it; it is NaN then
 };
 
 /// All of them, in the order of tables.
@@ -72,15 +71,14 @@ inline constexpr ResultNumber result_numbers[] = {
     {"volume_outflow_m3", "m3", "volume that left the domain", &MemberResult::volume_outflow},
     {"largest_thickness_m", "m", "largest thickness anywhere and at any time", &MemberResult::largest_thickness},
     {"p99_thickness_m", "m", "99 % of the cells with a largest thickness above 0 are below",
-     &MemberResult::p99_thickness, true},
+     &MemberResult::p99_thickness},
     {"largest_deposit_m", "m", "largest thickness of the deposit", &MemberResult::largest_deposit},
-    {"p99_deposit_m", "m", "99 % of the cells with a deposit are below", &MemberResult::p99_deposit, true},
+    {"p99_deposit_m", "m", "99 % of the cells with a deposit are below", &MemberResult::p99_deposit},
     {"largest_speed_m_s", "m s-1", "largest speed anywhere and at any time", &MemberResult::largest_speed},
-    {"p99_speed_m_s", "m s-1", "99 % of the cells with a largest speed above 0 are below", &MemberResult::p99_speed,
-     true},
+    {"p99_speed_m_s", "m s-1", "99 % of the cells with a largest speed above 0 are below", &MemberResult::p99_speed},
     {"largest_pressure_kPa", "kPa", "largest pressure anywhere and at any time", &MemberResult::largest_pressure},
     {"p99_pressure_kPa", "kPa", "99 % of the cells with a largest pressure above 0 are below",
-     &MemberResult::p99_pressure, true},
+     &MemberResult::p99_pressure},
     {"time_end_s", "s", "simulated time", &MemberResult::time_end},
     {"steps", "1", "time steps", &MemberResult::steps},
     {"wall_time_s", "s", "wall time of the steps", &MemberResult::wall_time},

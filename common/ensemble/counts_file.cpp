@@ -17,7 +17,7 @@
 namespace talus {
 namespace {
 
-const EnsembleFileKind counts_kind{"talus counts", "counts of an ensemble", "Run talus-solve again"};
+const EnsembleFileKind counts_kind{{"talus counts", "counts of an ensemble"}, "Run talus-solve again"};
 
 template <class T>
 h5::Dims length_of(const std::vector<T>& list) {
@@ -179,7 +179,6 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
   counts.results.resize(count);
   for (const ResultNumber& number : result_numbers) {
     const auto path = std::string("/members/results/") + number.name;
-    if (number.added && !file.exists(path)) continue;
     const auto values = file.read<double>(path, {count});
     h5::check_values<double>(file, path, values, h5::finite_or_none);
     for (std::size_t k = 0; k < values.size(); ++k) counts.results[k].*(number.value) = values[k];

@@ -15,7 +15,7 @@
 namespace talus {
 namespace {
 
-const EnsembleFileKind members_kind{"talus members", "a table of members", "Run talus-preprocess again"};
+const EnsembleFileKind members_kind{{"talus members", "a table of members"}, "Run talus-preprocess again"};
 
 /// Words of a column as one text, a line each.
 std::string lines_of(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, "\n")); }

@@ -136,19 +136,6 @@ bool File::has_attribute(const std::string& object, const std::string& name) con
   return found > 0;
 }
 
-bool File::is_group(const std::string& path) const {
-  const Id object(H5Oopen(id_, path.c_str(), H5P_DEFAULT), H5Oclose);
-  if (object.bad()) fail(fmt::format("{} cannot be opened", path));
-  return H5Iget_type(object) == H5I_GROUP;
-}
-
-H5T_class_t File::class_of(const std::string& path) const {
-  const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
-  if (set.bad()) fail(fmt::format("has no dataset {}", path));
-  const Id type(H5Dget_type(set), H5Tclose);
-  return H5Tget_class(type);
-}
-
 std::vector<std::string> File::children(const std::string& group) const {
   using Link = std::pair<std::int64_t, std::string>;
   std::vector<Link> links;
@@ -165,19 +152,6 @@ std::vector<std::string> File::children(const std::string& group) const {
   std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.first < b.first; });
   std::vector<std::string> names;
   for (Link& link : links) names.push_back(std::move(link.second));
-  return names;
-}
-
-std::vector<std::string> File::attribute_names(const std::string& object) const {
-  std::vector<std::string> names;
-  const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* data) -> herr_t {
-    static_cast<std::vector<std::string>*>(data)->emplace_back(name);
-    return 0;
-  };
-  if (H5Aiterate_by_name(id_, object.c_str(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect, &names, H5P_DEFAULT) <
-      0) {
-    fail(fmt::format("cannot read the attributes of {}", object));
-  }
   return names;
 }
 

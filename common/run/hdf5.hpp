@@ -75,14 +75,7 @@ class File {
   bool exists(const std::string& path) const;
   /// True when a group or dataset, which must be there, has an attribute of that name. Throws DataError likewise.
   bool has_attribute(const std::string& object, const std::string& name) const;
-  /// True where a path leads to a group.
-  bool is_group(const std::string& path) const;
-  /// True where a dataset holds whole numbers.
-  bool is_whole(const std::string& path) const { return class_of(path) == H5T_INTEGER; }
-  /// True where a dataset holds real numbers.
-  bool is_real(const std::string& path) const { return class_of(path) == H5T_FLOAT; }
-  std::vector<std::string> children(const std::string& group) const;          ///< in order of creation
-  std::vector<std::string> attribute_names(const std::string& object) const;  ///< in order of creation
+  std::vector<std::string> children(const std::string& group) const;  ///< in order of creation
 
   /// Sets an attribute to a text.
   void set_text(const std::string& object, const std::string& name, const std::string& value);
@@ -152,7 +145,6 @@ class File {
   void append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
                   std::size_t count);
   void create_extendible(const std::string& path, const Dims& row, hid_t type);
-  H5T_class_t class_of(const std::string& path) const;
   std::size_t checked_count(const std::string& path, const Dims& expected, hid_t type) const;
   std::size_t checked_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row, hid_t type) const;
   [[noreturn]] void refuse_shape(const std::string& path, const Dims& found, const std::string& why) const;

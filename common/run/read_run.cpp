@@ -14,28 +14,11 @@
 #include "common/run/run_facts.hpp"
 #include "common/run/run_file.hpp"
 #include "common/run/run_layout.hpp"
-#include "common/run/trusted_file.hpp"
 
 namespace talus {
 namespace {
 
 constexpr const char* mend = "Run talus-solve again";
-
-void check_format(const h5::TrustedFile& trusted, const std::filesystem::path& path) {
-  const h5::File& file = trusted.file;
-  if (!file.has_attribute("/", "format") || file.text("/", "format") != run_layout::format) {
-    throw DataError({path.string() + ": not a run of Talus", "an HDF5 file without the mark talus-solve leaves",
-                     "Give the run.h5 that talus-solve wrote"});
-  }
-  const auto version = file.integer("/", "format_version");
-  if (version < run_layout::oldest_version || version > run_layout::format_version) {
-    throw DataError(
-        {fmt::format("{}: layout version {}", path.string(), version),
-         fmt::format("this program reads versions {} to {}", run_layout::oldest_version, run_layout::format_version),
-         version > run_layout::format_version ? "Take the talus-postprocess that belongs to it" : mend});
-  }
-  if (version == run_layout::format_version) h5::expect_seal(trusted);
-}
 
 h5::Dims shape_of(const MapGrid& grid) { return {static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)}; }
 
@@ -80,21 +63,9 @@ RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
   return frames;
 }
 
-/// What files of earlier versions lack: the height of layers, and the densities by release.
-void read_grid_and_releases(const h5::File& file, RunSummary& summary) {
-  if (file.has_attribute("/", run_layout::layer_height))
-    summary.layer_height = h5::checked_number(file, "/", run_layout::layer_height, h5::not_negative);
-  if (!file.exists(run_layout::release_density)) return;
-  summary.release_density = file.read_list<double>(run_layout::release_density);
-  h5::check_values<double>(file, run_layout::release_density, summary.release_density, h5::not_negative);
-}
-
 RunSummary read_summary(const h5::File& file) {
   RunSummary summary;
   for (const auto& item : run_layout::summary_texts) summary.*(item.value) = file.text("/", item.name);
-  for (const auto& item : run_layout::summary_laws) {
-    if (file.has_attribute("/", item.name)) summary.*(item.value) = file.text("/", item.name);
-  }
   for (const auto& item : run_layout::summary_integers) {
     summary.*(item.value) = file.integer("/", item.name);
     if (summary.*(item.value) < 0)
@@ -102,12 +73,13 @@ RunSummary read_summary(const h5::File& file) {
   }
   for (const auto& item : run_layout::summary_numbers)
     summary.*(item.value) = h5::checked_number(file, "/", item.name, h5::not_negative);
-  for (const SanityNumber& number : sanity_numbers) {
-    if (file.has_attribute("/", number.name)) summary.sanity.*(number.value) = file.number("/", number.name);
+  for (const SanityNumber& number : sanity_numbers) summary.sanity.*(number.value) = file.number("/", number.name);
+  summary.sanity.words = file.text("/", run_layout::sanity_words);
+  constexpr const char* density = run_layout::release_density;
+  if (file.exists(density)) {
+    summary.release_density = file.read_list<double>(density);
+    h5::check_values<double>(file, density, summary.release_density, h5::not_negative);
   }
-  constexpr const char* words = run_layout::sanity_words;
-  if (file.has_attribute("/", words)) summary.sanity.words = file.text("/", words);
-  read_grid_and_releases(file, summary);
   for (const auto& phase : file.children("/profile")) {
     const auto seconds = file.read<double>("/profile/" + phase, {1});
     h5::check_values<double>(file, "/profile/" + phase, seconds, h5::not_negative);
@@ -120,9 +92,7 @@ RunSummary read_summary(const h5::File& file) {
 }  // namespace
 
 Run read_run(const std::filesystem::path& path) {
-  const h5::TrustedFile trusted = h5::open_trusted(path, {path, mend});
-  check_format(trusted, path);
-  const h5::File& file = trusted.file;
+  const h5::File file = h5::open_sealed(path, {path, mend}, run_layout::format);
   Run run;
   run.maps = read_maps(file);
   run.frames = read_frames(file, run.maps.grid);

@@ -3,12 +3,12 @@
 #include "common/run/run_facts.hpp"
 
 #include "common/run/grid_attributes.hpp"
-#include "common/run/trusted_file.hpp"
+#include "common/run/sealed_file.hpp"
 
 namespace talus {
 
 Facts run_facts(const std::filesystem::path& file) {
-  return run_facts(h5::open_trusted(file, {file, "Run talus-solve again"}).file);
+  return run_facts(h5::open_sealed(file, {file, "Run talus-solve again"}));
 }
 
 Facts run_facts(const h5::File& file) { return h5::read_facts(file, "/provenance"); }

@@ -49,12 +49,10 @@ void write_maps(h5::File& file, const RunMaps& maps) {
 
 void write_summary(h5::File& file, const RunSummary& summary) {
   for (const auto& item : run_layout::summary_texts) file.set_text("/", item.name, summary.*(item.value));
-  for (const auto& item : run_layout::summary_laws) file.set_text("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_integers) file.set_integer("/", item.name, summary.*(item.value));
   for (const auto& item : run_layout::summary_numbers) file.set_number("/", item.name, summary.*(item.value));
   for (const SanityNumber& number : sanity_numbers) file.set_number("/", number.name, summary.sanity.*(number.value));
   file.set_text("/", run_layout::sanity_words, summary.sanity.words);
-  file.set_number("/", run_layout::layer_height, summary.layer_height);
   if (!summary.release_density.empty())
     file.write<double>(run_layout::release_density, {summary.release_density.size()}, summary.release_density);
   file.make_group("/profile");
@@ -75,8 +73,7 @@ struct RunWriter::Open {
 
   explicit Open(std::filesystem::path path)
       : pending(std::move(path)), file(h5::File::create(pending.path(), {pending.final_path(), ""})), points(file) {
-    file.set_text("/", "format", run_layout::format);
-    file.set_integer("/", "format_version", run_layout::format_version);
+    h5::set_format(file, run_layout::format);
     file.make_group("/frames");
   }
 };

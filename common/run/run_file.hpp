@@ -99,7 +99,7 @@ struct Run {
   RunSummary summary;
 };
 
-/// Read everything but the points; files of the version before as well (docs/reference/formats.md). Throws DataError:
+/// Read everything but the points. Throws DataError:
 /// missing, truncated, changed since it was written, not a run of this program, or holding what cannot be.
 Run read_run(const std::filesystem::path& file);
 

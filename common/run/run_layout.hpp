@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "common/run/run_file.hpp"
+#include "common/run/sealed_file.hpp"
 
 namespace talus::run_layout {
 
-inline constexpr const char* format = "talus-run";
-/// Raised when a reader of today would misread the file or miss something in it; the version before is read as well
-/// (docs/reference/formats.md). 4: sealed (common/stage/checksum.hpp). 3: the same without a seal.
-inline constexpr std::int64_t format_version = 4;
-inline constexpr std::int64_t oldest_version = 3;
+inline constexpr h5::Format format{"talus-run", "a run of Talus"};
 
 /// A member of RunSummary and the attribute that holds it.
 template <class T>
@@ -27,17 +24,16 @@ struct SummaryItem {
 inline constexpr SummaryItem<std::string> summary_texts[] = {
     {"scene", &RunSummary::scene},         {"title", &RunSummary::title},     {"on", &RunSummary::on},
     {"precision", &RunSummary::precision}, {"version", &RunSummary::version}, {"stop_reason", &RunSummary::stop_reason},
+    {"material", &RunSummary::material},   {"bed", &RunSummary::bed},
 };
-/// Words that files of earlier versions lack.
-inline constexpr SummaryItem<std::string> summary_laws[] = {{"material", &RunSummary::material},
-                                                            {"bed", &RunSummary::bed}};
-/// The attribute for RunSanity::words; files of earlier versions lack it and the numbers beside it (run_sanity.hpp).
+/// The attribute for RunSanity::words.
 inline constexpr const char* sanity_words = "sanity";
 inline constexpr SummaryItem<std::int64_t> summary_integers[] = {{"particles", &RunSummary::particles},
                                                                  {"particles_outflow", &RunSummary::particles_outflow},
                                                                  {"steps", &RunSummary::steps}};
 inline constexpr SummaryItem<double> summary_numbers[] = {
     {"time_end_s", &RunSummary::time_end},
+    {"layer_height_m", &RunSummary::layer_height},
     {"wall_time_s", &RunSummary::wall_time},
     {"memory_bytes", &RunSummary::memory},
     {"density_kg_m3", &RunSummary::density},
@@ -47,8 +43,7 @@ inline constexpr SummaryItem<double> summary_numbers[] = {
     {"volume_outflow_m3", &RunSummary::volume_outflow},
 };
 
-/// The attribute for RunSummary::layer_height and the list for release_density; files of earlier versions lack them.
-inline constexpr const char* layer_height = "layer_height_m";
+/// The list for RunSummary::release_density; only there where a run has releases.
 inline constexpr const char* release_density = "/release_density_kg_m3";
 
 }  // namespace talus::run_layout

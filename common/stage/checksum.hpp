@@ -42,4 +42,7 @@ void seal_file(const std::filesystem::path& file, const std::filesystem::path& s
 /// the file cannot be read. A file that is cut short has lost its seal and counts as one that never had any.
 bool check_seal(const std::filesystem::path& file, const std::string& mend);
 
+/// Throws DataError with `mend` where a file is not sealed, in addition to the faults of check_seal().
+void require_seal(const std::filesystem::path& file, const std::string& mend);
+
 }  // namespace talus

@@ -12,9 +12,9 @@
 
 #include "common/recipe/overrides.hpp"
 #include "common/recipe/shown_paths.hpp"
-#include "common/stage/child_reading.hpp"
 #include "common/stage/command_line.hpp"
 #include "common/stage/console.hpp"
+#include "common/stage/crash_report.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/machine.hpp"
@@ -132,7 +132,7 @@ int guarded(int argc, char** argv, const Stage& stage) {
 }  // namespace
 
 int run_stage(int argc, char** argv, const Stage& stage) {
-  serve_child_reading(argc, argv);
+  report_crashes(stage.name);
   try {
     return guarded(argc, argv, stage);
   } catch (const Error& error) {

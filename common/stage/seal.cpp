@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "common/stage/checksum.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/write_fault.hpp"
 
 namespace talus {
@@ -100,6 +101,15 @@ bool check_seal(const fs::path& file, const std::string& mend) {
                 mend);
   }
   return true;
+}
+
+void require_seal(const fs::path& file, const std::string& mend) {
+  if (!fs::exists(file)) refuse_file(file, "no such file", "", mend);
+  require_plain(file);
+  if (fs::is_directory(file)) refuse_file(file, "cannot be read", "it is a folder", "Check the path");
+  if (!check_seal(file, mend))
+    refuse_file(file, "is damaged", "its checksum is missing: another program wrote or changed it, or its end is lost",
+                mend);
 }
 
 }  // namespace talus

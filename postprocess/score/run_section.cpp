@@ -71,7 +71,6 @@ void computation(const Scored& scored, Sheet& sheet) {
 
 void sanity(const Scored& scored, Sheet& sheet) {
   const RunSanity& found = scored.run.summary.sanity;
-  if (found.words.empty()) return;  // a run of an earlier version
   sheet.section("Sanity");
   sheet.text("sanity", "the run is", found.words);
   for (const SanityNumber& number : sanity_numbers)

@@ -16,11 +16,11 @@ struct FoundSurvey {
   bool outside_is_large = false;     ///< much changed outside the slide, and nothing explains it
   bool outside_is_doubtful = false;  ///< much of what counts as noise lies within reach of the slide
   std::string outside_words = {};
-  std::string id = {};           ///< of the domain that was prepared with it; empty in files of earlier versions
-  std::string recipe_mark = {};  ///< of the [preprocess] that made it; likewise
+  std::string id = {};           ///< of the domain that was prepared with it
+  std::string recipe_mark = {};  ///< of the [preprocess] that made it
 };
 
-/// Reads it; what it does not say (as those of earlier versions) is as above. Throws DataError where it is no JSON.
+/// Reads it; what it does not say is as above. Throws DataError where it is no JSON.
 FoundSurvey read_found_survey(const std::filesystem::path& out);
 
 /// True where it says that the error is not known, so that there is no raster of it. Never throws.

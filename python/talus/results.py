@@ -14,7 +14,7 @@ from talus.rasters import on_map
 from talus.recipe import Recipe
 from talus.survey import read_survey
 
-_VERSIONS = (3, 4)  # of run.h5: the number of today and the one before
+_VERSION = 1  # of run.h5
 
 
 def open_run(path):
@@ -41,9 +41,9 @@ class Run:
         except OSError as error:
             raise TalusError(f"{self.file}: it cannot be read as HDF5 ({error}). Run talus-solve again") from error
         version = self.facts.get("format_version")
-        if self.facts.get("format") != "talus-run" or version not in _VERSIONS or self._grid is None:
-            raise TalusError(f"{self.file}: this is no run of Talus of a format that is known here ({_VERSIONS[0]} or"
-                             f" {_VERSIONS[1]}, not {version}). Take the Python package of the programs that wrote it")
+        if self.facts.get("format") != "talus-run" or version != _VERSION or self._grid is None:
+            raise TalusError(f"{self.file}: this is no run of Talus of format {_VERSION} (its format: {version})."
+                             " Take the Python package of the programs that wrote it")
 
     def __repr__(self):
         return (f"<talus.Run {self.facts['scene']}: {self.facts['particles']} points, {self.facts['time_end_s']:g} s,"

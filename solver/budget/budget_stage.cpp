@@ -13,7 +13,7 @@
 
 #include "common/domain/domain_facts.hpp"
 #include "common/run/run_facts.hpp"
-#include "common/run/trusted_file.hpp"
+#include "common/run/sealed_file.hpp"
 #include "common/stage/console.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/interrupt.hpp"
@@ -246,11 +246,11 @@ bool is_this_run(StageContext& context) {
   const fs::path file = RunPaths(context.out).run;
   if (!fs::exists(file)) return false;
   const SolveOptions options = options_of(context.recipe, context.out);
-  const h5::TrustedFile run = h5::open_trusted(file, {file, "Remove it, and run talus-solve again"});
-  const Facts facts = run_facts(run.file);
+  const h5::File run = h5::open_sealed(file, {file, "Remove it, and run talus-solve again"});
+  const Facts facts = run_facts(run);
   const std::string domain = fact(domain_facts(inputs_of(options, context.out).front()), domain_id);
   if (fact(facts, recipe_of_run) != recipe_mark(context.recipe, "solve") || fact(facts, domain_id) != domain ||
-      run.file.text("/", "version") != version())
+      run.text("/", "version") != version())
     return false;
   log_info(fmt::format("{}: it is this run already", file.string()));
   context.results.push_back(file);

@@ -7,13 +7,11 @@
 #include <iterator>
 #include <vector>
 
-#include "common/stage/child_reading.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace fs = std::filesystem;
 
 int main(int argc, char** argv) {
-  talus::serve_child_reading(argc, argv);  // as the programs do, so that a library's crash is an error
   const auto found = argc >= 3 ? talus::fuzz::targets().find(argv[1]) : talus::fuzz::targets().end();
   if (found == talus::fuzz::targets().end()) {
     std::fprintf(stderr, "usage: talus-replay TARGET FOLDER|FILE..., the target being one of:");

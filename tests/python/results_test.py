@@ -111,7 +111,7 @@ class ResultsTest(unittest.TestCase):
             talus.open_run(HERE / "broken")
         with h5py.File(HERE / "broken/run.h5", "w") as file:
             file.attrs.update({"format": "talus-run", "format_version": 99})
-        with self.assertRaisesRegex(talus.TalusError, "not 99"):
+        with self.assertRaisesRegex(talus.TalusError, "its format: 99"):
             talus.open_run(HERE / "broken")
         with self.assertRaisesRegex(talus.TalusError, "there is no survey.json"):
             talus.read_survey(HERE / "broken")

@@ -23,9 +23,7 @@ function solver(data) {
     get("solve", "mapping") === "cartesian"
       ? "a Cartesian background grid"
       : "a background grid that follows the terrain";
-  // Words of the laws come from the solver; files of earlier versions have only their names.
-  const material = data.run.material || `the material model "${get("solve.material", "model")}"`,
-    bed = data.run.bed || `the law "${get("solve.base", "law")}"`;
+  const { material, bed } = data.run;  // words of the laws, from the solver
   const reference =
     get("solve", "preset") === "reference"
       ? " The preset \u201creference\u201d keeps to the published implicit scheme."

@@ -13,19 +13,14 @@
 #include "common/run/check_values.hpp"
 #include "common/run/hdf5.hpp"
 #include "common/run/history_group.hpp"
-#include "common/run/trusted_file.hpp"
+#include "common/run/sealed_file.hpp"
 #include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::solver {
 namespace {
 
-// Raised when a reader of today would misread the file or miss something in it; the kind before is read as well
-// (docs/reference/formats.md). 7: fields of the points that are not needed by every run may lack, and points may be
-// between two sorts. 6: without either.
-constexpr const char* kind = "talus checkpoint 7";
-constexpr const char* kind_before = "talus checkpoint 6";
-constexpr const char* any_kind = "talus checkpoint ";
+constexpr h5::Format checkpoint_format{"talus-checkpoint", "a checkpoint of this program"};
 constexpr const char* points_group = "/points";
 constexpr const char* homes = "/points/home";  // only there where steps were taken since points were sorted
 constexpr const char* mend = "Run talus-solve again without --restart";
@@ -85,29 +80,24 @@ class ItemWriter {
   std::string group_;
 };
 
-/// Reads what ItemWriter wrote. Of the kind before, items that it did not have yet keep their defaults.
+/// Reads the items that ItemWriter wrote.
 class ItemReader {
  public:
-  ItemReader(const h5::File& file, std::string group, bool before)
-      : file_(file), group_(std::move(group)), before_(before) {}
+  ItemReader(const h5::File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
   void operator()(const std::string& name, std::vector<int>& list) const {
-    if (before_ && !file_.exists(group_ + "/" + name)) return;
     list = file_.read_list<std::int32_t>(group_ + "/" + name);
   }
   void operator()(const std::string& name, std::vector<double>& list) const {
-    if (before_ && !file_.exists(group_ + "/" + name)) return;
     list = file_.read_list<double>(group_ + "/" + name);
     h5::check_values<double>(file_, group_ + "/" + name, list, h5::finite);
   }
   void operator()(const std::string& name, double& number) const {
-    if (before_ && !file_.has_attribute(group_, name)) return;
     number = h5::checked_number(file_, group_, name, h5::finite);
   }
   template <class Integer>
   requires std::is_integral_v<Integer>
   void operator()(const std::string& name, Integer& count) const {
-    if (before_ && !file_.has_attribute(group_, name)) return;
     const std::int64_t value = file_.integer(group_, name);
     if (!std::in_range<Integer>(value))
       file_.refuse(fmt::format("attribute {} {} is {}", group_, name, value), "it is out of range");
@@ -117,7 +107,6 @@ class ItemReader {
  private:
   const h5::File& file_;
   std::string group_;
-  bool before_;
 };
 
 bool is_optional(const ParticleField& field) { return field.needed_by != &ParticleNeeds::always; }
@@ -140,30 +129,18 @@ void write_points(h5::File& file, const SolverState& state) {
   if (!state.homes.empty()) file.write<std::int64_t>(homes, dims_of(state.homes.size()), state.homes);
 }
 
-void read_points(const h5::File& file, bool before, SolverState& state) {
-  const auto may_lack = [&](const ParticleField& field) { return before || is_optional(field); };
+void read_points(const h5::File& file, SolverState& state) {
+  const ItemReader items(file, points_group);
+  const auto lacks = [&](const ParticleField& field, const std::string& name) {
+    return is_optional(field) && !file.exists(std::string(points_group) + "/" + name);
+  };
   visit_points(state.points, [&](const ParticleField& field, const std::string& name, auto& list) {
-    ItemReader(file, points_group, may_lack(field))(name, list);
+    if (!lacks(field, name)) items(name, list);
   });
   visit_points(state.points, [&](const ParticleField& field, const std::string&, auto& list) {
-    if (may_lack(field) && list.empty()) list.assign(state.points.size(), field.initial);
+    if (is_optional(field) && list.empty()) list.assign(state.points.size(), field.initial);
   });
   if (file.exists(homes)) state.homes = file.read_list<std::int64_t>(homes);
-}
-
-/// Whether a checkpoint is of the kind before; those of other kinds are refused.
-bool is_of_kind_before(const std::filesystem::path& path, const h5::TrustedFile& trusted) {
-  const h5::File& file = trusted.file;
-  const std::string found = file.has_attribute("/", "kind") ? file.text("/", "kind") : "";
-  if (found == kind || found == kind_before) {
-    h5::expect_seal(trusted);
-    return found == kind_before;
-  }
-  if (!found.starts_with(any_kind)) file.fail("this is no checkpoint of this program");
-  throw DataError(
-      {fmt::format("{}: its kind is \"{}\"", path.string(), found),
-       fmt::format("another version of this program wrote it, this one reads \"{}\" and \"{}\"", kind_before, kind),
-       "Run talus-solve again without --restart, or go on with the version that wrote it"});
 }
 
 /// Lists that must be of one length: those of the points, those of the map, those of the contact points.
@@ -206,14 +183,12 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   PendingFile pending(path);
   h5::File file = h5::File::create(pending.path(), {path, "Free some space, or name another folder with --out DIR"});
   file.leave_plain();  // a signal waits for it
-  file.set_text("/", "kind", kind);
+  h5::set_format(file, checkpoint_format);
   file.set_text("/", "fingerprint", checkpoint.fingerprint);
   file.set_text("/", "id", checkpoint.id);
   file.set_text("/", "stop_reason", checkpoint.stop_reason);
   write_points(file, checkpoint.state);
   visit(checkpoint, [&](const char* group) { return ItemWriter(file, group); });
-  visit_added_memory(checkpoint.memory,
-                     [&](const char* name, std::int64_t value) { file.set_integer("/memory", name, value); });
   write_history(file, checkpoint.memory.history);
   file.close();
   seal_file(pending.path(), path);
@@ -223,9 +198,7 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
 std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   try {
-    const h5::TrustedFile trusted = h5::open_trusted(path, {path, mend});
-    is_of_kind_before(path, trusted);
-    const h5::File& file = trusted.file;
+    const h5::File file = h5::open_sealed(path, {path, mend}, checkpoint_format);
     return CheckpointHead{file.text("/", "fingerprint"), file.number("/clock", "time"), file.integer("/clock", "step")};
   } catch (const DataError&) {
     return std::nullopt;  // broken, or of another version
@@ -233,9 +206,7 @@ std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& pa
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& fingerprint) {
-  const h5::TrustedFile trusted = h5::open_trusted(path, {path, mend});
-  const bool before = is_of_kind_before(path, trusted);
-  const h5::File& file = trusted.file;
+  const h5::File file = h5::open_sealed(path, {path, mend}, checkpoint_format);
   Checkpoint c;
   c.fingerprint = file.text("/", "fingerprint");
   if (c.fingerprint != fingerprint) {
@@ -243,11 +214,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
                      "going on from it would mix two runs",
                      "Restore the recipe and domain.vdb it was made with, or run talus-solve without --restart"});
   }
-  if (file.has_attribute("/", "id")) c.id = file.text("/", "id");
-  if (file.has_attribute("/", "stop_reason")) c.stop_reason = file.text("/", "stop_reason");
-  read_points(file, before, c.state);
-  visit(c, [&](const char* group) { return ItemReader(file, group, before); });
-  visit_added_memory(c.memory, ItemReader(file, "/memory", true));
+  c.id = file.text("/", "id");
+  c.stop_reason = file.text("/", "stop_reason");
+  read_points(file, c.state);
+  visit(c, [&](const char* group) { return ItemReader(file, group); });
   c.memory.history = read_history(file);
   check_lengths(file, c);
   return c;

@@ -90,19 +90,13 @@ void visit_memory(AnyMemory& m, Item&& item) {
   item("initial_thickness", m.initial_thickness);
   item("section_x", m.section_x);
   item("section_y", m.section_y);
-}
-
-/// This function calls item(name, value) for what a run's memory has that checkpoints of the same kind may lack: those
-/// of runs without it.
-template <class AnyMemory, class Item>
-void visit_added_memory(AnyMemory& m, Item&& item) {
   item("pulses", m.pulses);
 }
 
 /// The content of checkpoint.h5.
 struct Checkpoint {
   std::string fingerprint;  ///< of domain and settings; a checkpoint of other ones is refused
-  std::string id;           ///< of the run, which its frames carry too; empty in checkpoints of earlier versions
+  std::string id;           ///< of the run, which its frames carry too
   std::string stop_reason;  ///< why the steps came to their end; empty where there are more to come
   SolverState state;
   RunMemory memory;
@@ -122,10 +116,9 @@ struct CheckpointHead {
 /// The head of the checkpoint in `file`; none where there is no such file, or none that this version can read.
 std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& file);
 
-/// The checkpoint in `file`, bit for bit what was written; one of the version before as well
-/// (docs/reference/formats.md). The function throws DataError when the file is missing, truncated, changed since it was
-/// written, of another kind (a newer or a much older version of this program), made from another domain or other
-/// settings, or inconsistent in itself.
+/// The checkpoint in `file`, bit for bit what was written. The function throws DataError when the file is missing,
+/// truncated, changed since it was written, of another format number, made from another domain or other settings, or
+/// inconsistent in itself.
 Checkpoint read_checkpoint(const std::filesystem::path& file, const std::string& fingerprint);
 
 }  // namespace talus::solver

@@ -6,7 +6,7 @@
 
 #include "common/run/check_values.hpp"
 #include "common/run/hdf5.hpp"
-#include "common/run/trusted_file.hpp"
+#include "common/run/sealed_file.hpp"
 #include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
 
@@ -102,16 +102,15 @@ void FrameStore::expect(std::int64_t count) const {
 
 void FrameStore::append_to(RunWriter& run, std::int64_t number, const MapGrid& grid) const {
   const std::filesystem::path path = file(number);
-  const h5::TrustedFile trusted = h5::open_trusted(path, {path, "Run talus-solve again without --restart"});
-  const std::string owner = trusted.file.has_attribute("/", "run_id") ? trusted.file.text("/", "run_id") : "";
+  const h5::File frame = h5::open_sealed(path, {path, "Run talus-solve again without --restart"});
+  const std::string owner = frame.has_attribute("/", "run_id") ? frame.text("/", "run_id") : "";
   if (owner != run_id_)
     throw DataError({fmt::format("{}: a frame of the run {}", path.string(), owner),
                      fmt::format("this is the run {}", run_id_), "Run talus-solve again without --restart"});
-  const PointFrame f = points_in(trusted.file);
+  const PointFrame f = points_in(frame);
   if (!f.id.empty()) run.append(f);
   run.append_thickness(
-      f.time, grid,
-      read_all<double>(trusted.file, "/thickness", {rows_in(grid), columns_in(grid)}, h5::not_negative_or_none));
+      f.time, grid, read_all<double>(frame, "/thickness", {rows_in(grid), columns_in(grid)}, h5::not_negative_or_none));
 }
 
 }  // namespace talus::solver

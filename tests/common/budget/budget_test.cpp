@@ -7,7 +7,6 @@
 
 #include "tests/common/damage.hpp"
 #include "tests/common/scratch.hpp"
-#include "tests/places.hpp"
 
 namespace talus {
 namespace {
@@ -105,14 +104,6 @@ TEST(BudgetFile, gives_back_what_was_written) {
   EXPECT_EQ(read.count(BudgetState::left_out), 1u);
 }
 
-/// Written by the program before these numbers were there.
-TEST(BudgetFile, without_99th_percentiles_is_read_and_knows_none) {
-  const Budget old = read_budget(std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/budget-2-without-p99.h5");
-  ASSERT_EQ(old.runs.size(), 1u);
-  EXPECT_EQ(old.runs[0].result.largest_speed, 7);
-  EXPECT_TRUE(std::isnan(old.runs[0].result.p99_speed));
-}
-
 TEST(BudgetFile, refuses_rows_that_no_budget_has_and_thickness_below_zero) {
   const test::Scratch scratch;
   Budget budget = small_budget();
@@ -140,20 +131,6 @@ TEST(BudgetFile, without_its_seal_and_damaged_is_refused_or_read) {
   const std::string bytes = test::text_of(scratch / "budget.h5");
   const int refused = test::refused_of(50, bytes, [](const std::filesystem::path& file) { read_budget(file); });
   EXPECT_EQ(refused, 50) << "the seal tells";
-}
-
-TEST(BudgetFile, reads_version_2) {
-  const Budget budget = read_budget(std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/budget-2.h5");
-  ASSERT_EQ(budget.runs.size(), 5u);
-  EXPECT_EQ(budget.runs[1].name, "friction-less");
-  EXPECT_EQ(budget.runs[1].state, BudgetState::done);
-  EXPECT_NEAR(budget.runs[1].result.largest_speed, 1.39824, 1e-5);
-  EXPECT_EQ(budget.runs[1].deposit.grid.columns, 20);
-  double volume = 0;
-  for (const double thickness : budget.runs[1].deposit.values) volume += 100 * thickness;
-  EXPECT_NEAR(volume, 6400, 1e-6) << "cells of 100 m2";
-  EXPECT_EQ(budget.runs[4].state, BudgetState::left_out);
-  EXPECT_NE(budget.runs[4].reason.find("the error of the survey is not known"), std::string::npos);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include "tests/common/damage.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
-#include "tests/places.hpp"
 
 namespace talus {
 namespace {
@@ -156,21 +155,6 @@ TEST(CountsFile, whose_deposits_are_not_of_their_footprints_is_refused) {
   EXPECT_NE(fault.find("/members/deposit_thickness/values has"), std::string::npos) << fault;
 }
 
-/// Written by the program before these numbers were there.
-TEST(CountsFile, without_99th_percentiles_is_read_and_knows_none) {
-  const EnsembleCounts old = read_counts(fs::path(TALUS_SOURCE_DIR) / "tests/golden/counts-2-without-p99.h5");
-  ASSERT_EQ(old.results.size(), 6u);
-  EXPECT_EQ(old.count(MemberState::counted), 5);
-  EXPECT_GT(old.results[0].largest_speed, 0);
-  EXPECT_TRUE(std::isnan(old.results[0].p99_thickness));
-  EXPECT_TRUE(std::isnan(old.results[0].p99_deposit));
-  EXPECT_TRUE(std::isnan(old.results[0].p99_speed));
-  EXPECT_TRUE(std::isnan(old.results[0].p99_pressure));
-  const test::Scratch scratch;  // counting may go on with them
-  write_counts(scratch / "counts.h5", old);
-  expect_same(read_counts(scratch / "counts.h5"), old);
-}
-
 TEST(CountsFile, of_a_part_in_which_nothing_came_anywhere_comes_back) {
   const test::Scratch scratch;
   const EnsembleCounts counts = empty_counts(test::ensemble_scene(), 4, {0, 4}, {});
@@ -238,19 +222,6 @@ TEST(CountsFile, with_counts_that_cannot_be_is_refused) {
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.warnings = {{6, "of no member"}}; }), "");
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.flow[0].clear(); }), "") << "counted, without a footprint";
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.flow[0] = {10, 5}; }), "") << "not of this grid";
-}
-
-TEST(EnsembleCounts, reads_version_2) {
-  const EnsembleCounts counts = read_counts(fs::path(TALUS_SOURCE_DIR) / "tests/golden/counts-2.h5");
-  EXPECT_EQ(counts.members, 3);
-  EXPECT_EQ(counts.count(MemberState::counted), 3);
-  EXPECT_EQ(counts.scene.scene, "bowl");
-  EXPECT_EQ(counts.scene.grid.columns, 20);
-  EXPECT_EQ(counts.scene.tallied, Tallied::distribution);
-  EXPECT_NEAR(counts.results[1].largest_speed, 1.22497, 1e-5);
-  EXPECT_NEAR(counts.results[1].volume_final, 6400, 1e-9);
-  EXPECT_EQ(counts.maps[0].reached[counts.cells.find(4, 9)], 3u) << "all members cover the release";
-  EXPECT_EQ(counts.maps[0].thresholds, (std::vector<double>{0.5}));
 }
 
 }  // namespace

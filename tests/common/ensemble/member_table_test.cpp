@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "common/ensemble/member_words.hpp"
-#include "tests/common/damage.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
-#include "tests/places.hpp"
 
 namespace talus {
 namespace {
@@ -46,18 +44,6 @@ TEST(MemberTable, with_a_failure_of_no_member_is_refused) {
     const std::string fault = test::fault_of<DataError>([&] { read_member_table(scratch / "members.h5"); });
     EXPECT_NE(fault.find("group /failures names member " + std::to_string(member)), std::string::npos) << fault;
   }
-}
-
-TEST(MemberTable, reads_version_2) {
-  const MemberTable table = read_member_table(std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/members-2.h5");
-  EXPECT_EQ(table.design, "sobol");
-  EXPECT_EQ(table.count, 3);
-  ASSERT_EQ(table.columns.size(), 2u);
-  EXPECT_EQ(table.columns[0].key, "solve.base.friction_angle_deg");
-  EXPECT_NEAR(table.columns[0].values[2], 19.5819, 1e-4);
-  EXPECT_EQ(table.columns[1].words, (std::vector<std::string>{"coulomb", "voellmy"}));
-  EXPECT_EQ(table.columns[1].values, (std::vector<double>{1, 0, 1}));
-  EXPECT_FALSE(table.slides);
 }
 
 }  // namespace

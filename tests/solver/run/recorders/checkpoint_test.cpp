@@ -12,17 +12,16 @@
 #include <fstream>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <set>
 #include <vector>
 
-#include "common/run/hdf5.hpp"
+#include "common/run/sealed_file.hpp"
+#include "common/stage/checksum.hpp"
 #include "solver/run/recorders/check_checkpoint.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "solver/state/contact_state.hpp"
 #include "solver/state/particle_fields.hpp"
 #include "tests/common/scratch.hpp"
-#include "tests/places.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver {
@@ -98,7 +97,6 @@ Checkpoint sample() {
   FillItems fill;
   visit_clock(c.state.clock, fill);
   visit_memory(c.memory, fill);
-  visit_added_memory(c.memory, fill);
   c.memory.history.columns = {{.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 0.1}},
                               {.name = "a_later_column", .unit = "m", .quantity = "q", .place = "p", .values = {7, 8}}};
   return c;
@@ -114,10 +112,7 @@ TEST(Checkpoint, visits_name_every_member_once) {
   EXPECT_EQ(clock_bits(Clock{}).size(), member_count<Clock>());
   RunMemory memory;
   memory.initial_thickness = memory.section_x = memory.section_y = {1};
-  CollectBits added;
-  visit_added_memory(memory, added);
-  EXPECT_EQ(names(memory_bits(memory)) + names(added.bits), member_count<RunMemory>() - 1)
-      << "the history has columns of its own";
+  EXPECT_EQ(names(memory_bits(memory)), member_count<RunMemory>() - 1) << "the history has columns of its own";
 }
 
 TEST(Checkpoint, every_scalar_comes_back_bit_for_bit) {
@@ -270,22 +265,6 @@ TEST(Checkpoint, a_look_at_it_tells_whose_it_is_and_how_far_it_is) {
   EXPECT_EQ(head->step, c.state.clock.step);
 }
 
-TEST(Checkpoint, the_kind_before_is_read) {
-  const auto path = std::filesystem::path(TALUS_SOURCE_DIR) / "tests/golden/checkpoint-6.h5";
-  const Checkpoint c = read_checkpoint(path, h5::File::open(path, {path, ""}).text("/", "fingerprint"));
-  EXPECT_EQ(c.state.clock.step, 352);
-  EXPECT_EQ(c.state.clock.time, 6.5);
-  EXPECT_EQ(c.memory.frames, 13);
-  EXPECT_EQ(c.state.points.size(), 128u);
-  EXPECT_NEAR(std::accumulate(c.state.points.volume.begin(), c.state.points.volume.end(), 0.0), 6400, 1e-9);
-  const auto check_length = [&](const ParticleField& field, int component, const auto& list) {
-    if (field.kept >= Kept::in_checkpoint) {
-      EXPECT_EQ(list.size(), 128u) << field.name_of(component);
-    }
-  };
-  visit_particle_fields(check_length, c.state.points);
-}
-
 TEST(Checkpoint, a_changed_byte_is_noticed) {
   const Scratch scratch;
   write_checkpoint(scratch / "checkpoint.h5", sample());
@@ -368,18 +347,15 @@ TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it)
   EXPECT_TRUE(fault_with(home(at[0], 12, at[2])).starts_with(no_fit + "home of point 0 is "));
 }
 
-TEST(Checkpoint, an_older_kind_is_refused_in_words) {
+TEST(Checkpoint, another_format_is_refused) {
   const Scratch scratch;
   const auto path = scratch / "checkpoint.h5";
   h5::File file = h5::File::create(path, {path, ""});
-  file.set_text("/", "kind", "talus checkpoint 5");
+  h5::set_format(file, {"talus-checkpoint", "", 7});
   file.close();
+  seal_file(path, path);
   EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
-            path.string() +
-                ": its kind is \"talus checkpoint 5\" (another version of this program wrote it, this one reads "
-                "\"talus checkpoint 6\" and \"talus checkpoint 7\"). Run talus-solve again without --restart, or go on "
-                "with the version that "
-                "wrote it");
+            path.string() + ": format 7 (this version reads 1). Run talus-solve again without --restart");
 }
 
 TEST(Checkpoint, other_files_are_refused_in_words) {
@@ -389,8 +365,10 @@ TEST(Checkpoint, other_files_are_refused_in_words) {
             path.string() + ": no such file. Run talus-solve again without --restart");
   h5::File file = h5::File::create(path, {path, ""});
   file.close();
+  seal_file(path, path);
   EXPECT_EQ(fault_of<DataError>([&] { read_checkpoint(path, ""); }),
-            path.string() + ": this is no checkpoint of this program. Run talus-solve again without --restart");
+            path.string() +
+                ": is not a checkpoint of this program (its mark is missing). Run talus-solve again without --restart");
   write_checkpoint(path, sample());
   EXPECT_TRUE(fault_of<DataError>([&] {
                 read_checkpoint(path, "another one");
