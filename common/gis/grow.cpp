@@ -50,6 +50,19 @@ void add_shapes(const OGRGeometry& shape, const MapPolygon& like, std::vector<Ma
 
 }  // namespace
 
+std::string invalidity_of(const MapPolygon& polygon) {
+  const OGRPolygon shape = ogr_polygon(polygon);
+  if (shape.IsEmpty()) return "it has no corners";
+  std::string why;  // GEOS gives its reason as a warning
+  const auto keep = [](CPLErr, CPLErrorNum, const char* message) {
+    *static_cast<std::string*>(CPLGetErrorHandlerUserData()) = message;
+  };
+  CPLPushErrorHandlerEx(keep, &why);
+  const bool valid = shape.IsValid() != 0;
+  CPLPopErrorHandler();
+  return valid ? "" : why.empty() ? "GEOS gives no reason" : why;
+}
+
 std::vector<MapPolygon> grown(const std::vector<MapPolygon>& polygons, double distance,
                               const std::filesystem::path& file) {
   if (distance == 0) return polygons;

@@ -13,9 +13,8 @@
 
 namespace talus::preprocess {
 
-/// Refuse (DataError, with the place) polygons whose rings cross themselves or one another, have fewer than three
-/// corners or no area, or whose holes lie outside; and turn the rings (outer counter-clockwise, holes clockwise).
-/// CGAL's exact predicates decide.
+/// Refuse (DataError, with the place) polygons that are not valid (invalidity_of() in common/gis/grow.hpp), and turn
+/// the rings (outer counter-clockwise, holes clockwise).
 void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::path& file);
 
 /// read_polygons() that pass check_polygons().

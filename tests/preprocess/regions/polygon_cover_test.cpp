@@ -118,49 +118,54 @@ std::string refusal(std::vector<Ring> rings) {
   return fault_of<DataError>([&] { check_polygons(polygons, "outline.shp"); });
 }
 
-const std::string mend = " Mend it in a GIS, or: ogr2ogr -makevalid out.gpkg outline.shp";
+std::string not_valid(const std::string& why) {
+  return "outline.shp: polygon 1 is not valid (" + why +
+         "). Mend it in a GIS, or: ogr2ogr -makevalid out.gpkg outline.shp";
+}
 
 TEST(polygon_check, names_the_place_where_an_outline_crosses_itself) {
-  EXPECT_EQ(
-      refusal({{{0, 0}, {10, 10}, {10, 0}, {0, 10}}}),
-      "outline.shp: polygon 1: its outline crosses or touches itself at x 5.0, y 5.0 (what is inside is unclear)." +
-          mend);
+  EXPECT_EQ(refusal({{{0, 0}, {10, 10}, {10, 0}, {0, 10}}}), not_valid("Self-intersection at or near point 5 5"));
 }
 
 TEST(polygon_check, refuses_a_spike) {
-  EXPECT_EQ(
-      refusal({{{0, 0}, {10, 0}, {10, 10}, {10, 4}, {10, 20}, {0, 20}}}),
-      "outline.shp: polygon 1: its outline crosses or touches itself at x 10.0, y 7.0 (what is inside is unclear)." +
-          mend);
+  EXPECT_NE(refusal({{{0, 0}, {10, 0}, {10, 10}, {10, 4}, {10, 20}, {0, 20}}}).find("Self-intersection"),
+            std::string::npos);
 }
 
 TEST(polygon_check, refuses_a_corner_that_lies_on_another_edge) {
-  EXPECT_EQ(
-      refusal({{{0, 0}, {10, 0}, {10, 10}, {5, 0}, {0, 10}}}),
-      "outline.shp: polygon 1: its outline crosses or touches itself at x 5.0, y 0.0 (what is inside is unclear)." +
-          mend);
+  EXPECT_EQ(refusal({{{0, 0}, {10, 0}, {10, 10}, {5, 0}, {0, 10}}}),
+            not_valid("Ring Self-intersection at or near point 5 0"));
 }
 
 TEST(polygon_check, refuses_a_hole_outside_its_outline) {
   EXPECT_EQ(refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{20, 20}, {25, 20}, {20, 25}}}),
-            "outline.shp: polygon 1: a hole reaches x 20.0, y 20.0 (that is outside its outline)." + mend);
+            not_valid("Hole lies outside shell at or near point 20 20"));
 }
 
 TEST(polygon_check, refuses_a_hole_across_its_outline) {
-  EXPECT_EQ(refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{8, 5}, {12, 4}, {12, 6}}})
-                .find("outline.shp: polygon 1: its outline crosses"),
-            0u);
+  EXPECT_NE(refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{8, 5}, {12, 4}, {12, 6}}}).find("Self-intersection"),
+            std::string::npos);
 }
 
 TEST(polygon_check, refuses_a_hole_within_a_hole) {
   const std::string text =
       refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{2, 2}, {8, 2}, {8, 8}, {2, 8}}, {{4, 4}, {6, 4}, {5, 6}}});
-  EXPECT_EQ(text, "outline.shp: polygon 1: two holes overlap at x 4.0, y 4.0 (what they leave out is unclear)." + mend);
+  EXPECT_NE(text.find("nested"), std::string::npos) << text;
 }
 
 TEST(polygon_check, refuses_an_outline_without_area) {
-  EXPECT_EQ(refusal({{{0, 0}, {10, 10}}}),
-            "outline.shp: polygon 1: a ring has fewer than three corners (it has no area)." + mend);
+  EXPECT_NE(refusal({{{0, 0}, {10, 10}}}).find("Too few points"), std::string::npos);
+  EXPECT_NE(refusal({{{0, 0}, {10, 10}, {20, 20}}}).find("is not valid"), std::string::npos);
+  EXPECT_NE(refusal({}).find("it has no corners"), std::string::npos);
+  EXPECT_NE(refusal({{{0, 0}}}).find("is not valid"), std::string::npos);
+}
+
+TEST(polygon_check, names_the_polygon) {
+  std::vector<MapPolygon> polygons{polygon_of({{{0, 0}, {10, 0}, {10, 10}}}), polygon_of({{{0, 0}, {10, 10}}})};
+  polygons[1].name = "scar";
+  EXPECT_TRUE(fault_of<DataError>([&] {
+                check_polygons(polygons, "outline.shp");
+              }).starts_with("outline.shp: polygon 2 \"scar\" is not valid ("));
 }
 
 TEST(polygon_check, allows_a_hole_that_touches_the_outline_in_a_corner) {

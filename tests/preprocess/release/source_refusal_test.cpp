@@ -28,11 +28,10 @@ TEST(refusal, polygon_that_crosses_itself) {
       test::write_polygon(scene.scratch, "source.csv",
                           "POLYGON((500100 5100100,500200 5100200,500200 5100100,500100 5100200,500100 5100100))");
   const std::string file = scene.path("source.csv");
-  EXPECT_EQ(scene.data_fault(),
-            file +
-                ": polygon 1: its outline crosses or touches itself at x 500150.0, y 5100150.0 (what "
-                "is inside is unclear). Mend it in a GIS, or: ogr2ogr -makevalid out.gpkg " +
-                file);
+  EXPECT_EQ(scene.data_fault(), file +
+                                    ": polygon 1 is not valid (Self-intersection at or near point 500150 5100150). "
+                                    "Mend it in a GIS, or: ogr2ogr -makevalid out.gpkg " +
+                                    file);
 }
 
 TEST(refusal, source_without_any_elevation) {
