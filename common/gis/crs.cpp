@@ -44,6 +44,17 @@ std::string crs_by_name(const std::string& name) {
   return srs.SetFromUserInput(name.c_str()) == OGRERR_NONE ? gdal::horizontal_wkt(&srs) : "";
 }
 
+std::string crs_projjson(const std::string& wkt) {
+  const gdal::QuietErrors errors;
+  OGRSpatialReference srs;
+  char* json = nullptr;
+  const bool known = srs.importFromWkt(wkt.c_str()) == OGRERR_NONE &&
+                     srs.exportToPROJJSON(&json, nullptr) == OGRERR_NONE && json != nullptr;
+  std::string text = known ? json : "";
+  CPLFree(json);
+  return text;
+}
+
 bool is_metric(const std::string& wkt) {
   if (wkt.empty()) return true;
   const gdal::QuietErrors errors;

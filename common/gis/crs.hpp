@@ -17,6 +17,9 @@ std::string crs_name(const std::string& wkt);
 /// it.
 std::string crs_by_name(const std::string& name);
 
+/// A CRS as PROJJSON (https://proj.org/specifications/projjson.html); "" for none, or where PROJ does not know it.
+std::string crs_projjson(const std::string& wkt);
+
 /// True for a projected CRS in metres, and for none at all ("").
 bool is_metric(const std::string& wkt);
 

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <map>
-#include <optional>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "common/gis/crs.hpp"
 
 namespace talus::postprocess {
 namespace {
+
+using Json = nlohmann::json;
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -17,28 +21,14 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The text after KEYWORD[" up to the next quote, from `start` on; moves `start` behind it.
-std::optional<std::string> next_name(const std::string& wkt, const std::string& keyword, std::size_t& start) {
-  const auto mark = keyword + "[\"";
-  const auto found = wkt.find(mark, start);
-  if (found == std::string::npos) return std::nullopt;
-  const auto begin = found + mark.size(), end = wkt.find('"', begin);
-  if (end == std::string::npos) return std::nullopt;
-  start = end + 1;
-  return wkt.substr(begin, end - begin);
-}
-
-/// Numbers that follow a name: ,6378137,298.257...
-std::vector<double> numbers_at(const std::string& wkt, std::size_t start) {
-  std::vector<double> values;
-  while (start < wkt.size() && wkt[start] == ',') {
-    char* end = nullptr;
-    const double value = std::strtod(wkt.c_str() + start + 1, &end);
-    if (end == wkt.c_str() + start + 1) break;
-    values.push_back(value);
-    start = static_cast<std::size_t>(end - wkt.c_str());
-  }
-  return values;
+/// A value in degrees or metres: PROJJSON names units other than these with their factor to radians or metres.
+double value_of(const Json& number) {
+  if (number.is_number()) return number.get<double>();
+  const double value = number.at("value").get<double>();
+  const Json unit = number.value("unit", Json());
+  if (!unit.is_object()) return value;
+  const double factor = unit.at("conversion_factor").get<double>();
+  return value * factor * (unit.at("type") == "AngularUnit" ? 180 / std::numbers::pi : 1);
 }
 
 using Names = std::map<std::string, std::string>;  // EPSG's parameter name, lower case -> CF's
@@ -104,19 +94,18 @@ void add(CfProjection& projection, const std::string& name, double value) {
     found->second.push_back(value);  // the second standard parallel
 }
 
-void add_figure_of_the_earth(CfProjection& projection, const std::string& wkt) {
-  std::size_t place = 0;
-  if (next_name(wkt, "ELLIPSOID", place)) {
-    const auto axes = numbers_at(wkt, place);
-    if (axes.size() >= 2) {
-      add(projection, "semi_major_axis", axes[0]);
-      add(projection, "inverse_flattening", axes[1]);
-    }
+void add_figure_of_the_earth(CfProjection& projection, const Json& ellipsoid, const Json& meridian) {
+  if (ellipsoid.contains("radius")) {
+    add(projection, "semi_major_axis", value_of(ellipsoid["radius"]));
+    add(projection, "inverse_flattening", 0);
+  } else {
+    const double a = value_of(ellipsoid.at("semi_major_axis"));
+    add(projection, "semi_major_axis", a);
+    add(projection, "inverse_flattening",
+        ellipsoid.contains("inverse_flattening") ? value_of(ellipsoid["inverse_flattening"])
+                                                 : a / (a - value_of(ellipsoid.at("semi_minor_axis"))));
   }
-  place = 0;
-  const bool other = next_name(wkt, "PRIMEM", place).has_value();
-  const auto meridian = other ? numbers_at(wkt, place) : std::vector<double>{};
-  add(projection, "longitude_of_prime_meridian", meridian.empty() ? 0.0 : meridian[0]);
+  add(projection, "longitude_of_prime_meridian", meridian.is_object() ? value_of(meridian.at("longitude")) : 0.0);
 }
 
 /// A polar projection given by its standard parallel lies at the pole of that side.
@@ -128,14 +117,12 @@ void add_pole(CfProjection& projection) {
 }
 
 /// CF's oblique Mercator has no angle of its own between its axes and its central line.
-bool lies_along_its_line(const std::string& wkt) {
-  std::size_t place = 0;
+bool lies_along_its_line(const Json& parameters) {
   double azimuth = 0, angle = 0;
-  while (const auto parameter = next_name(wkt, "PARAMETER", place)) {
-    const auto values = numbers_at(wkt, place);
-    if (values.empty()) continue;
-    if (lower(*parameter).starts_with("azimuth")) azimuth = values[0];
-    if (lower(*parameter).starts_with("angle from rectified")) angle = values[0];
+  for (const Json& parameter : parameters) {
+    const std::string name = lower(parameter.at("name"));
+    if (name.starts_with("azimuth")) azimuth = value_of(parameter);
+    if (name.starts_with("angle from rectified")) angle = value_of(parameter);
   }
   return azimuth == angle;
 }
@@ -153,50 +140,47 @@ std::string datum_word(const std::string& name) {
   return word;
 }
 
-void add_names(CfProjection& projection, const std::string& wkt) {
-  const auto named = [&](const char* keyword) {
-    std::size_t place = 0;
-    return next_name(wkt, keyword, place);
-  };
-  const auto projected = named("PROJCRS"), geographic = named("BASEGEOGCRS"), ellipsoid = named("ELLIPSOID");
-  auto datum = named("DATUM");
-  if (!datum) datum = named("ENSEMBLE");
-  if (!projected || !geographic || !ellipsoid || !datum) return;
-  if (datum->ends_with(" ensemble")) datum->resize(datum->size() - 9);
-  projection.words = {{"projected_crs_name", *projected},
-                      {"geographic_crs_name", *geographic},
-                      {"horizontal_datum_name", datum_word(*datum)},
-                      {"reference_ellipsoid_name", *ellipsoid},
-                      {"prime_meridian_name", named("PRIMEM").value_or("Greenwich")}};
+/// The CRS without the transformation that some files bind to it.
+Json unbound(const Json& crs) { return crs.value("type", "") == "BoundCRS" ? crs.at("source_crs") : crs; }
+
+CfProjection projection_of(const Json& crs) {
+  CfProjection projection;
+  if (crs.value("type", "") != "ProjectedCRS") return projection;
+  const Json &conversion = crs.at("conversion"), &base = crs.at("base_crs");
+  const auto method = methods.find(lower(conversion.at("method").at("name")));
+  if (method == methods.end()) return projection;
+  projection.grid_mapping_name = method->second.cf;
+  const Json parameters = conversion.value("parameters", Json::array());
+  for (const Json& parameter : parameters) {
+    const std::string key = lower(parameter.at("name"));
+    const auto own = method->second.own.find(key);
+    const auto shared = common_names.find(key);
+    if (own != method->second.own.end()) {
+      if (!own->second.empty()) add(projection, own->second, value_of(parameter));
+    } else if (shared != common_names.end()) {
+      add(projection, shared->second, value_of(parameter));
+    }
+  }
+  if (projection.grid_mapping_name == "oblique_mercator" && !lies_along_its_line(parameters)) return {};
+  add_pole(projection);
+  const Json& datum = base.contains("datum") ? base.at("datum") : base.at("datum_ensemble");
+  const Json meridian = datum.value("prime_meridian", Json());
+  add_figure_of_the_earth(projection, datum.at("ellipsoid"), meridian);
+  std::string datum_name = datum.at("name");
+  if (datum_name.ends_with(" ensemble")) datum_name.resize(datum_name.size() - 9);
+  projection.words = {{"projected_crs_name", crs.at("name")},
+                      {"geographic_crs_name", base.at("name")},
+                      {"horizontal_datum_name", datum_word(datum_name)},
+                      {"reference_ellipsoid_name", datum.at("ellipsoid").at("name")},
+                      {"prime_meridian_name", meridian.is_object() ? meridian.at("name") : Json("Greenwich")}};
+  return projection;
 }
 
 }  // namespace
 
-CfProjection cf_projection(const std::string& wkt2) {
-  CfProjection projection;
-  std::size_t place = 0;
-  const auto name = next_name(wkt2, "METHOD", place);
-  const auto method = name ? methods.find(lower(*name)) : methods.end();
-  // Grads and other units of angle would need converting; no metric national grid with a CF name uses them here.
-  if (method == methods.end() || wkt2.find("ANGLEUNIT[\"grad\"") != std::string::npos) return projection;
-  projection.grid_mapping_name = method->second.cf;
-  while (const auto parameter = next_name(wkt2, "PARAMETER", place)) {
-    const auto key = lower(*parameter);
-    const auto values = numbers_at(wkt2, place);
-    const auto own = method->second.own.find(key);
-    const auto shared = common_names.find(key);
-    if (values.empty()) continue;
-    if (own != method->second.own.end()) {
-      if (!own->second.empty()) add(projection, own->second, values[0]);
-    } else if (shared != common_names.end()) {
-      add(projection, shared->second, values[0]);
-    }
-  }
-  if (projection.grid_mapping_name == "oblique_mercator" && !lies_along_its_line(wkt2)) return {};
-  add_pole(projection);
-  add_figure_of_the_earth(projection, wkt2);
-  add_names(projection, wkt2);
-  return projection;
+CfProjection cf_projection(const std::string& wkt) {
+  const Json crs = Json::parse(crs_projjson(wkt), nullptr, false);
+  return crs.is_object() ? projection_of(unbound(crs)) : CfProjection();
 }
 
 }  // namespace talus::postprocess

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What CF wants to know of a projected CRS, taken from its WKT2.
+// What CF wants to know of a projected CRS.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ struct CfProjection {
   std::vector<std::pair<std::string, std::string>> words;
 };
 
-/// Read METHOD, PARAMETER, ELLIPSOID and PRIMEM of a WKT2 text. Projections not in CF's appendix give an empty name:
-/// readers then go by crs_wkt, which is written in every case.
-CfProjection cf_projection(const std::string& wkt2);
+/// The attributes of a CRS. Projections not in CF's appendix give an empty name: readers then go by crs_wkt, which is
+/// written in every case.
+CfProjection cf_projection(const std::string& wkt);
 
 }  // namespace talus::postprocess

@@ -163,11 +163,7 @@ TEST_F(MapFiles, a_netcdf_that_cannot_be_written_is_named_and_leaves_nothing) {
 }
 
 TEST(CfProjection, reads_both_parallels_of_a_lambert_cone) {
-  const auto cone = cf_projection(
-      R"wkt(PROJCRS["x",BASEGEOGCRS["y",DATUM["z",ELLIPSOID["GRS 1980",6378137,298.257222101]]],CONVERSION["c",)wkt"
-      R"wkt(METHOD["Lambert Conic Conformal (2SP)"],PARAMETER["Latitude of false origin",45.5],)wkt"
-      R"wkt(PARAMETER["Longitude of false origin",-120.5],PARAMETER["Latitude of 1st standard parallel",47.3],)wkt"
-      R"wkt(PARAMETER["Latitude of 2nd standard parallel",45.8],PARAMETER["Easting at false origin",500000]]])wkt");
+  const auto cone = cf_projection(crs_by_name("EPSG:2154"));  // Lambert-93
   EXPECT_EQ(cone.grid_mapping_name, "lambert_conformal_conic");
   const auto find = [&](const std::string& name) {
     for (const auto& [key, values] : cone.numbers) {
@@ -175,14 +171,37 @@ TEST(CfProjection, reads_both_parallels_of_a_lambert_cone) {
     }
     return std::vector<double>{};
   };
-  EXPECT_EQ(find("standard_parallel"), (std::vector<double>{47.3, 45.8}));
-  EXPECT_EQ(find("longitude_of_central_meridian"), std::vector<double>{-120.5});
-  EXPECT_EQ(find("false_easting"), std::vector<double>{500000});
+  EXPECT_EQ(find("standard_parallel"), (std::vector<double>{49, 44}));
+  EXPECT_EQ(find("longitude_of_central_meridian"), std::vector<double>{3});
+  EXPECT_EQ(find("false_easting"), std::vector<double>{700000});
   EXPECT_EQ(find("semi_major_axis"), std::vector<double>{6378137});
 }
 
+TEST(CfProjection, gives_grads_in_degrees) {
+  const auto paris = cf_projection(
+      R"wkt(PROJCRS["x",BASEGEOGCRS["y",DATUM["z",ELLIPSOID["Clarke 1880 (IGN)",6378249.2,293.466021293627]],)wkt"
+      R"wkt(PRIMEM["Paris",2.5969213,ANGLEUNIT["grad",0.015707963267949]]],CONVERSION["c",)wkt"
+      R"wkt(METHOD["Transverse Mercator"],PARAMETER["Latitude of natural origin",50,)wkt"
+      R"wkt(ANGLEUNIT["grad",0.015707963267949]],PARAMETER["False easting",5,LENGTHUNIT["metre",1]]],)wkt"
+      R"wkt(CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]])wkt");
+  EXPECT_EQ(paris.grid_mapping_name, "transverse_mercator");
+  for (const auto& [name, values] : paris.numbers) {
+    if (name == "latitude_of_projection_origin") {
+      EXPECT_NEAR(values[0], 45, 1e-9);
+    }
+    if (name == "longitude_of_prime_meridian") {
+      EXPECT_NEAR(values[0], 2.33722917, 1e-8);
+    }
+    if (name == "inverse_flattening") {
+      EXPECT_NEAR(values[0], 293.466021293627, 1e-9);
+    }
+  }
+}
+
 TEST(CfProjection, names_nothing_it_does_not_know) {
-  EXPECT_TRUE(cf_projection(R"wkt(PROJCRS["x",CONVERSION["c",METHOD["Krovak"]]])wkt").grid_mapping_name.empty());
+  EXPECT_TRUE(cf_projection(crs_by_name("EPSG:5514")).grid_mapping_name.empty()) << "Krovak";
+  EXPECT_TRUE(cf_projection(crs_by_name("EPSG:4326")).grid_mapping_name.empty());
+  EXPECT_TRUE(cf_projection("no CRS").grid_mapping_name.empty());
   EXPECT_TRUE(cf_projection("").grid_mapping_name.empty());
 }
 
