@@ -11,6 +11,7 @@
 
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/vector_layer.hpp"
+#include "common/stage/crash_report.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -75,6 +76,7 @@ std::optional<NoPlace> take_feature(const fs::path& file, const OGRFeature& feat
 }  // namespace
 
 PlaceLayer read_place_layer(const fs::path& file, const std::string& crs_wkt, const LayerChoice& choice) {
+  const WhileReading while_reading(file, "Copy or download it again");
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = gdal::open_vector(file);
   OGRLayer& layer = gdal::layer_named(*dataset, file, choice.layer);

@@ -9,6 +9,7 @@
 
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/vector_layer.hpp"
+#include "common/stage/crash_report.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -102,6 +103,7 @@ void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLi
 }  // namespace
 
 std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& crs_wkt, const LayerChoice& choice) {
+  const WhileReading while_reading(file, "Copy or download it again");
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = gdal::open_vector(file);
   OGRLayer* found = choice.layer.empty() ? nullptr : dataset->GetLayerByName(choice.layer.c_str());
@@ -125,6 +127,7 @@ std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& c
 
 std::vector<PolygonFeature> read_polygon_features(const fs::path& file, const std::string& crs_wkt,
                                                   const LayerChoice& choice) {
+  const WhileReading while_reading(file, "Copy or download it again");
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = gdal::open_vector(file);
   OGRLayer& named = gdal::layer_named(*dataset, file, choice.layer);
@@ -146,6 +149,7 @@ std::vector<PolygonFeature> read_polygon_features(const fs::path& file, const st
 }
 
 std::vector<MapLine> read_lines(const fs::path& file, const std::string& crs_wkt) {
+  const WhileReading while_reading(file, "Copy or download it again");
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = gdal::open_vector(file);
   OGRLayer& layer = *dataset->GetLayer(0);

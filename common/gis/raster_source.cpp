@@ -10,6 +10,7 @@
 #include "common/gis/grid_limits.hpp"
 #include "common/gis/local_only.hpp"
 #include "common/gis/vertical_unit.hpp"
+#include "common/stage/crash_report.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::gdal {
@@ -21,7 +22,10 @@ Dataset open_any(const fs::path& file, const AsciiGrid& ascii) {
   return ascii.is_one() ? open_ascii_grid(ascii.path(), how) : Dataset(GDALDataset::Open(file.c_str(), how));
 }
 
+constexpr auto copy_again = "Copy or download it again";
+
 Dataset open(const fs::path& file, const AsciiGrid& ascii) {
+  const WhileReading reading(file, copy_again);
   const QuietErrors errors;
   Dataset dataset = open_any(file, ascii);
   if (!dataset) {
@@ -124,6 +128,7 @@ std::array<int, 2> RasterSource::block() const {
 }
 
 std::vector<double> RasterSource::read(int column, int line, int columns, int lines) {
+  const WhileReading reading(file_, copy_again);
   const QuietErrors errors;
   std::vector<double> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(lines));
   const bool read = band_->RasterIO(GF_Read, column, line, columns, lines, values.data(), columns, lines, GDT_Float64,

@@ -8,12 +8,14 @@
 
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
+#include "common/stage/crash_report.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
 
 Dataset open_vector(const fs::path& file) {
   require_local(file);
+  const WhileReading reading(file, "Copy or download it again");
   const QuietErrors errors;
   Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (dataset && dataset->GetLayerCount() > 0) return dataset;

@@ -160,6 +160,11 @@ TEST(polygon_check, refuses_an_outline_without_area) {
   EXPECT_NE(refusal({{{0, 0}}}).find("is not valid"), std::string::npos);
 }
 
+TEST(polygon_check, refuses_a_hole_that_cuts_its_outline_in_two) {
+  const std::string text = refusal({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{0, 5}, {5, 4}, {10, 5}, {5, 6}}});
+  EXPECT_NE(text.find("disconnected"), std::string::npos) << text;
+}
+
 TEST(polygon_check, names_the_polygon) {
   std::vector<MapPolygon> polygons{polygon_of({{{0, 0}, {10, 0}, {10, 10}}}), polygon_of({{{0, 0}, {10, 10}}})};
   polygons[1].name = "scar";
