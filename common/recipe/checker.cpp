@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The visitor that looks at what options need of one another, once they have been read.
-#include <cstdlib>
-
 #include "common/recipe/recipe.hpp"
-#include "common/recipe/values.hpp"
 
 namespace talus::recipe {
 namespace {
@@ -39,14 +36,5 @@ class Checker : public Visitor {
 }  // namespace
 
 std::unique_ptr<Visitor> make_checker(std::vector<Fault>& faults) { return std::make_unique<Checker>(faults); }
-
-void renamed(Visitor& v, std::string_view old_key, std::string_view key,
-             const std::function<double(double)>& new_value) {
-  v.renamed(old_key, key, [&](const std::string& old) -> std::string {
-    char* end = nullptr;
-    const double value = std::strtod(old.c_str(), &end);
-    return old.empty() || *end != '\0' ? "" : toml_number(new_value(value));  // no number: the key alone is named
-  });
-}
 
 }  // namespace talus::recipe

@@ -73,8 +73,6 @@ class Reader : public Visitor {
   void begin_item(std::size_t item) override { walk_.push_item(item); }
   void end_item() override { walk_.pop_table(); }
   void end_list() override { walk_.pop_list(); }
-  void renamed(std::string_view old_key, std::string_view key,
-               const std::function<std::string(const std::string&)>& new_value) override;
 
  private:
   template <class T>
@@ -218,15 +216,6 @@ void Reader::one_of(std::string_view key, int& index, const std::vector<std::str
   if (node == nullptr || !read_plain(*node, key, word, names_text(names).c_str())) return;
   if (is_one_of(*node, key, word, names))
     index = static_cast<int>(std::find(names.begin(), names.end(), word) - names.begin());
-}
-
-void Reader::renamed(std::string_view old_key, std::string_view key,
-                     const std::function<std::string(const std::string&)>& new_value) {
-  const auto* node = walk_.find_renamed(old_key);
-  if (node == nullptr) return;
-  const std::string old_value = value_text(*node), value = new_value ? new_value(old_value) : old_value;
-  walk_.add(*node, old_key, fmt::format("{} has taken its place", key),
-            value.empty() ? fmt::format("Write {} instead", key) : fmt::format("Write {} = {}", key, value));
 }
 
 }  // namespace

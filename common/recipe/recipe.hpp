@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <map>
@@ -67,11 +66,6 @@ class Visitor {
   /// false. Only find_unmet() looks, at options that have been read in full, so that the others may come later in the
   /// visit.
   virtual void needs(bool /*met*/, const Fault& /*otherwise*/) {}
-  /// A key that has another name now: a recipe that holds it is refused, with the key and the value that take its
-  /// place. `new_value` makes the value of the old one's text where unit or words changed (empty: no value is the
-  /// same); null: the value stays. Keys without such a successor are listed in gone_keys.cpp.
-  virtual void renamed(std::string_view /*old_key*/, std::string_view /*key*/,
-                       const std::function<std::string(const std::string&)>& /*new_value*/) {}
 };
 
 /// An enum by name: choice(v, "shape", shape, {{"linear", Shape::linear}, {"quadratic", Shape::quadratic}}, "...").
@@ -117,13 +111,6 @@ template <class T>
 void list(Visitor& v, std::string_view key, std::vector<T>& items, std::string_view help) {
   list(v, key, items, help, [&](T& item, std::size_t) { item.describe(v); });
 }
-
-/// A key that was renamed and kept its value: v.number("density_kg_m3", ...); renamed(v, "density", "density_kg_m3").
-inline void renamed(Visitor& v, std::string_view old_key, std::string_view key) { v.renamed(old_key, key, nullptr); }
-
-/// A number that was renamed because its unit changed; new_value(old) is the value to write.
-void renamed(Visitor& v, std::string_view old_key, std::string_view key,
-             const std::function<double(double)>& new_value);
 
 /// The visitor that adds what the options need and do not have to `faults`.
 std::unique_ptr<Visitor> make_checker(std::vector<Fault>& faults);

@@ -68,7 +68,7 @@ void Walk::pop_table() {
   for (const auto& key : frame.known) all_known_.emplace(key, frame.name);
   if (frame.table != nullptr) {
     for (const auto& [key, node] : *frame.table)
-      if (!contains(frame.known, key.str()) && !contains(frame.renamed, key.str()))
+      if (!contains(frame.known, key.str()))
         unknown_.push_back({std::string(key.str()), frame.name, frame.path, key.source(), frame.known});
   }
   frames_.pop_back();
@@ -93,12 +93,6 @@ const toml::node* Walk::find(std::string_view key) {
   Frame& frame = frames_.back();
   if (!contains(frame.known, key)) frame.known.emplace_back(key);
   return frame.table == nullptr ? nullptr : frame.table->get(key);
-}
-
-const toml::node* Walk::find_renamed(std::string_view old_key) {
-  Frame& frame = frames_.back();
-  frame.renamed.emplace_back(old_key);
-  return frame.table == nullptr ? nullptr : frame.table->get(old_key);
 }
 
 std::string_view Walk::advice_on_word(std::string_view key, std::string_view word) const {

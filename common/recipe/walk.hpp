@@ -28,9 +28,6 @@ class Walk {
   /// The value of a key in the table at hand, or null; from now on the key is known.
   const toml::node* find(std::string_view key);
 
-  /// The value of a key that is refused by its old name, or null; it is neither unknown nor offered as a suggestion.
-  const toml::node* find_renamed(std::string_view old_key);
-
   /// The advice on a word that a choice in the table at hand had in earlier versions; empty: it never had.
   std::string_view advice_on_word(std::string_view key, std::string_view word) const;
 
@@ -44,10 +41,9 @@ class Walk {
   /// A table on the way down. `table` is null where the file has none: then every key keeps its default.
   struct Frame {
     const toml::table* table = nullptr;
-    std::string name{};                  // "[solve.material]"
-    std::string path{};                  // "solve.material"
-    std::vector<std::string> known{};    // keys asked for so far
-    std::vector<std::string> renamed{};  // and old names of keys
+    std::string name{};                // "[solve.material]"
+    std::string path{};                // "solve.material"
+    std::vector<std::string> known{};  // keys asked for so far
   };
   /// `items` is null where the file has no such list.
   struct List {

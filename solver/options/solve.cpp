@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/options/solve.hpp"
 
-#include <cstdlib>
-
 #include <fmt/format.h>
 
 #include "solver/options/hindrances.hpp"
@@ -68,16 +66,6 @@ void need_preset(recipe::Visitor& v, const SolveOptions& o) {
   sets("transfer_time_s", !o.transfer_time);
 }
 
-/// The text that says in seconds what `transfer_time` said in explicit steps of the length by which waves cross a
-/// layer; empty: the old value is no number.
-std::string seconds_of(const std::string& steps, const SolveOptions& o) {
-  char* end = nullptr;
-  const double count = std::strtod(steps.c_str(), &end);
-  if (steps.empty() || *end != '\0') return {};
-  if (!(count > 0) || count > 1e6) return steps;  // never, or at every step
-  return fmt::format("{:.3g} times the layers' height in metres, or leave it out", count / fastest_wave(o));
-}
-
 }  // namespace
 
 void SolveOptions::describe(recipe::Visitor& v) {
@@ -100,7 +88,6 @@ void SolveOptions::describe(recipe::Visitor& v) {
   need_columns(v, *this);
   need_accuracy(v, *this);
   need_preset(v, *this);
-  v.renamed("transfer_time", "transfer_time_s", [this](const std::string& steps) { return seconds_of(steps, *this); });
 }
 
 SolveOptions with_preset(SolveOptions o) {

@@ -3,7 +3,6 @@
 // Options with one key of every kind, as a stage would have them.
 #pragma once
 
-#include <numbers>
 #include <string>
 
 #include "common/recipe/recipe.hpp"
@@ -29,8 +28,6 @@ struct SampleMaterial {
   double tension = recipe::infinity;
   void describe(recipe::Visitor& v, const double& density) {
     v.number("friction_angle_deg", friction, {0, 90, false, true}, "internal friction");
-    recipe::renamed(v, "friction_angle_rad", "friction_angle_deg",
-                    [](double rad) { return rad / std::numbers::pi * 180; });
     v.number("tension_pa", tension, recipe::not_negative, "tension cut-off");
     v.needs(density < 1e5 || friction > 0,
             {"[solve.material] friction_angle_deg = 0 with so large a density", "nothing would hold it", "Raise it"});
@@ -57,7 +54,6 @@ struct SampleOptions {
     recipe::table(v, "material", material, "what moves", density);
     v.integer("steps", steps, {1, 1000}, "how many");
     v.flag("verbose", verbose, "say more");
-    recipe::renamed(v, "log", "verbose");
     v.needs(!verbose || steps > 1, {"[solve] verbose = true with steps = 1", "there is nothing to tell",
                                     "Take more steps, or leave verbose out"});
     v.text("label", label, "any text");

@@ -231,22 +231,6 @@ TEST(Suggest, offers_only_what_is_near) {
   EXPECT_EQ(recipe::did_you_mean("x", {}), "Remove it");
 }
 
-TEST_F(RecipeFile, refuses_a_renamed_key_with_its_new_name_and_value) {
-  EXPECT_EQ(faults("[solve]\nlog = true"),
-            "r.toml:2:7: [solve] log = true (verbose has taken its place). Write verbose = true");
-  EXPECT_EQ(faults("[solve.material]\nfriction_angle_rad = 0.5"),
-            "r.toml:2:22: [solve.material] friction_angle_rad = 0.5 (friction_angle_deg has taken its place). Write "
-            "friction_angle_deg = 28.64788975654116");
-  EXPECT_EQ(faults("[solve.material]\nfriction_angle_rad = \"steep\""),
-            "r.toml:2:22: [solve.material] friction_angle_rad = \"steep\" (friction_angle_deg has taken its place). "
-            "Write friction_angle_deg instead");
-}
-
-TEST_F(RecipeFile, does_not_suggest_an_old_name) {
-  EXPECT_EQ(faults("[solve.material]\nfriction_angle_ra = 0.5"),
-            "r.toml:2:1: unknown key \"friction_angle_ra\" in [solve.material]. Did you mean \"friction_angle_deg\"?");
-}
-
 TEST_F(RecipeFile, refuses_what_a_key_needs_and_does_not_have) {
   EXPECT_EQ(faults("[solve]\nsteps = 2\nverbose = true\nshape = \"linear\""), "");
   EXPECT_EQ(faults("[solve]\nverbose = true\nsteps = 1\nshape = \"cubic\""),
