@@ -15,8 +15,7 @@ foreach(_recipe IN LISTS _recipes)
   install(DIRECTORY ${_folder}/ DESTINATION ${TALUS_SHARE}/${_folder} COMPONENT runtime FILES_MATCHING
     PATTERN out EXCLUDE PATTERN "*.toml" PATTERN "*.md" PATTERN "*.csv" PATTERN "*.geojson" PATTERN "*.tif")
 endforeach()
-install(FILES pipelines/Makefile pipelines/stages.mk DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
-install(PROGRAMS pipelines/run-scene DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
+install(FILES pipelines/Makefile DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
 file(RELATIVE_PATH _bin ${CMAKE_INSTALL_FULL_DATADIR}/talus/pipelines ${CMAKE_INSTALL_FULL_BINDIR})
 file(WRITE ${CMAKE_BINARY_DIR}/installed.mk "# Installed: the programs, and where the user stands.
 BIN  ?= $(CURDIR)/${_bin}

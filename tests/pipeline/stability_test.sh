@@ -7,7 +7,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 # The scene on cells of 20 m, in seconds.
 stage_scene() {
   mkdir -p pipelines
-  cp "$TALUS_SOURCE"/pipelines/{Makefile,run-scene,stages.mk} pipelines/
+  cp "$TALUS_SOURCE/pipelines/Makefile" pipelines/
   cp -r "$TALUS_SOURCE/pipelines/synthetic-stability" pipelines/scene
   sed -i -e "s,../../data_samples,$TALUS_SOURCE/data_samples," -e 's/^spacing_m.*/spacing_m = 20.0/' \
     -e 's/^tolerance.*/tolerance = 0.1/' pipelines/scene/stability.toml
