@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,8 @@
 #include "common/gis/dataset_files.hpp"
 #include "common/run/run_facts.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/input_file.hpp"
+#include "postprocess/compare/compare.hpp"
 #include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/slides/run_slides.hpp"
@@ -209,7 +212,21 @@ void run(StageContext& context) {
     log_warning(fmt::format("{}: another recipe made it than the ensemble's; it is left as it is", file.string()));
 }
 
+namespace {
+
+/// The id of the run in score.json.
+std::string id_in(const fs::path& result) {
+  if (result.filename() != "score.json") return "";
+  static constexpr std::string_view key = "\"run_id\": \"";
+  const std::string text = text_if_there(result).value_or("");
+  const auto at = text.find(key);
+  return at == std::string::npos ? "" : text.substr(at + key.size(), mark_digits);
+}
+
+}  // namespace
+
 Stage stage() {
+  const auto against = std::make_shared<std::optional<fs::path>>();
   Stage stage;
   stage.name = "talus-postprocess";
   stage.table = "postprocess";
@@ -229,8 +246,13 @@ Stage stage() {
   stage.used_toml = [](const recipe::Recipe& recipe) {
     return recipe::to_toml(recipe.read<Options>("postprocess"), "postprocess", false);
   };
+  stage.flags = {{.name = "--against",
+                  .help = "Compare the run in --out with the one in this folder, write OUT/comparison.html, and stop",
+                  .value = "DIR",
+                  .set = [against](const std::string& folder) { *against = folder; }}};
   stage.depends = depends;
-  stage.run = run;
+  stage.id_of = id_in;
+  stage.run = [against](StageContext& context) { *against ? compare(context, **against) : run(context); };
   return stage;
 }
 

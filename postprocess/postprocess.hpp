@@ -1,15 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stage talus-postprocess: run.h5 -> maps/ (GeoTIFF, NetCDF, outlines, QGIS project), map.png, report.html,
-// history.csv, score.json, score.txt; of an ensemble members.h5, counts*.h5 -> probability/ and what ensemble/ writes.
+// The work of talus-postprocess.
 #pragma once
 
-#include "common/stage/stage.hpp"
+#include "postprocess/stage.hpp"
 
 namespace talus::postprocess {
-
-/// What talus-postprocess gives to the runner of stages.
-Stage stage();
 
 /// What the report is made of: the run, the survey that it is scored against, the thalweg, and what the stages before
 /// left about themselves, where that is there.

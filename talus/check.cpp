@@ -6,11 +6,6 @@
 
 #include <algorithm>
 
-#include "common/recipe/overrides.hpp"
-#include "common/stage/console.hpp"
-#include "common/stage/stage.hpp"
-#include "talus/freshness.hpp"
-#include "talus/run.hpp"
 #include "talus/temporary_folder.hpp"
 
 namespace talus::command {
@@ -20,18 +15,10 @@ namespace {
 /// What the stages said, sorted into what ends a run and what does not.
 class Listing {
  public:
-  /// The faults stand last in what a stage that failed has said, each behind its name.
-  void add(const std::string& stage, const Outcome& outcome) {
-    code_ = std::max(code_, outcome.code);
-    const std::string name = "talus-" + stage + ": ";
-    for (std::size_t at = 0; at < outcome.err.size();) {
-      const auto end = std::min(outcome.err.find('\n', at), outcome.err.size());
-      std::string line = outcome.err.substr(at, end - at);
-      at = end + 1;
-      if (line.starts_with(name)) put(faults_, stage, line.substr(name.size()));
-      if (line.starts_with("warning: ")) put(warnings_, stage, line.substr(9));
-      if (line.starts_with("advice: ")) put(advice_, stage, line.substr(8));
-    }
+  void add(const std::string& stage, const Said& said) {
+    code_ = std::max(code_, static_cast<int>(said.outcome.code));
+    for (const Fault& fault : said.outcome.faults) put(faults_, stage, to_string(fault));
+    for (const auto& [level, text] : said.lines) put(level == LogLevel::warning ? warnings_ : advice_, stage, text);
   }
   void add_fault(const std::string& stage, const std::string& fault, ExitCode code) {
     code_ = std::max(code_, static_cast<int>(code));
@@ -42,7 +29,7 @@ class Listing {
   int print(const std::string& scene) const {
     for (const std::string& text : notes_) log_info(text);
     for (const auto& [stage, text] : warnings_) log_warning(fmt::format("{}: {}", stage, text));
-    for (const auto& [stage, text] : advice_) log_info(fmt::format("advice: {}: {}", stage, text));
+    for (const auto& [stage, text] : advice_) log_advice(fmt::format("{}: {}", stage, text));
     for (const auto& [stage, text] : faults_) log_error(fmt::format("{}: {}", stage, text));
     log_info(fmt::format("{}: {}, {}", scene, counted(faults_.size(), "fault"), counted(warnings_.size(), "warning")));
     return code_;
@@ -76,31 +63,39 @@ void look_for_files(const Request& request, Listing& listing) {
   }
 }
 
-bool up_to_date(const Request& request, const recipe::Recipe& recipe, const char* stage, const std::string& table) {
-  return judge(request, recipe, state_of(request, stage, table)).run_because.empty();
+bool up_to_date(const Request& request, const std::string& stage) {
+  const Stage program = stage_called(stage);
+  return judge_freshness(program, open_call(program, call_of(request, stage))).run_because.empty();
+}
+
+Said check_stage(const Request& request, const std::string& stage) {
+  StageCall call = call_of(request, stage);
+  call.check_only = true;
+  return call_quietly(stage, call);
 }
 
 /// Data and physics of a recipe whose tables are in order.
-void check_together(const Request& request, const std::vector<std::string>& tables, Listing& listing) {
-  const recipe::Recipe recipe(request.recipe);
+void check_together(const Request& request, Listing& listing) {
   Request at_work = request;
   std::optional<TemporaryFolder> folder;
-  const bool has_domain = up_to_date(request, recipe, "preprocess", tables[0]);
+  const bool has_domain = up_to_date(request, "preprocess");
   if (has_domain) {
-    listing.add("preprocess", run_stage_program(request, "preprocess", {"--check"}, Keep::everything));
-  } else if (recipe.canonical("preprocess")) {
+    listing.add("preprocess", check_stage(request, "preprocess"));
+  } else if (recipe::Recipe(request.recipe, request.set).canonical("preprocess")) {
     folder.emplace("talus-check");
     at_work.out = at_work.shown = folder->path();
-    const Outcome outcome = run_stage_program(at_work, "preprocess", {}, Keep::everything);
-    listing.add("preprocess", outcome);
-    if (outcome.code != 0) {
+    const Said said = call_quietly("preprocess", call_of(at_work, "preprocess"));
+    listing.add("preprocess", said);
+    if (said.outcome.code != ExitCode::success) {
       look_for_files(request, listing);
       return listing.note("solve: its physics can be checked once the domain can be prepared");
     }
   }
-  listing.add("solve", run_stage_program(at_work, "solve", {"--check"}, Keep::everything));
-  if (has_domain && up_to_date(request, recipe, "solve", tables[1]))
-    listing.add("postprocess", run_stage_program(request, "postprocess", {"--check"}, Keep::everything));
+  stop_if_interrupted("checking the recipe");
+  listing.add("solve", check_stage(at_work, "solve"));
+  stop_if_interrupted("checking the recipe");
+  if (has_domain && up_to_date(request, "solve"))
+    listing.add("postprocess", check_stage(request, "postprocess"));
   else
     look_for_files(request, listing);
 }
@@ -108,17 +103,15 @@ void check_together(const Request& request, const std::vector<std::string>& tabl
 }  // namespace
 
 int check_scene(const Request& request) {
-  recipe::set_overrides(request.set);
   Listing listing;
-  std::vector<std::string> tables;
   bool readable = true;
   for (const char* stage : stage_names) {
-    const Outcome used = ask(request, stage, "--used");
-    listing.add(stage, used);
-    readable = readable && used.code == 0;
-    tables.push_back(used.out);
+    std::vector<Fault> faults;
+    add_table_faults(request, stage, faults);
+    for (const Fault& fault : faults) listing.add_fault(stage, to_string(fault), ExitCode::recipe);
+    readable = readable && faults.empty();
   }
-  if (readable) check_together(request, tables, listing);
+  if (readable) check_together(request, listing);
   return listing.print(request.recipe.filename().string());
 }
 

@@ -31,7 +31,12 @@ int compare_runs(const fs::path& first, const fs::path& second, const Request& r
   asked.recipe = recipe_in(first);
   asked.out = fs::absolute(first).lexically_normal();
   asked.shown = first;
-  return run_stage_program(asked, "postprocess", {"--against", second.string()}, Keep::nothing).code;
+  StageCall call = call_of(asked, "postprocess");
+  call.flags.emplace_back("--against", second.string());
+  const Stage program = stage_called("postprocess");
+  const StageOutcome outcome = call_stage(program, call);
+  if (outcome.code == ExitCode::success) print_results(outcome.results);
+  return report_faults(program.name, outcome);
 }
 
 }  // namespace talus::command

@@ -9,8 +9,10 @@
 
 #include "common/error.hpp"
 #include "common/recipe/shown_paths.hpp"
-#include "common/stage/console.hpp"
+#include "common/run/prepare_hdf5.hpp"
+#include "common/stage/context.hpp"
 #include "common/stage/crash_report.hpp"
+#include "common/stage/interrupt.hpp"
 #include "common/stage/stage.hpp"
 #include "talus/check.hpp"
 #include "talus/compare.hpp"
@@ -28,6 +30,7 @@ constexpr const char* footer =
     "  talus run my-slide/recipe.toml                     every stage whose results are not up to date\n"
     "  talus run recipe.toml --set solve.end_time_s=60    with another value than the recipe's\n"
     "  talus run recipe.toml --budget                     and how sure the run is, doubt by doubt\n"
+    "  talus run recipe.toml --plan                       what the run takes: points, steps, time\n"
     "  talus new before.tif after.tif                     a first recipe: spacing, layers and end time from the "
     "release\n"
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
@@ -80,6 +83,8 @@ Request scene_request(const Asked& asked) {
 void declare(CLI::App& app, Asked& asked) {
   CLI::App* run = app.add_subcommand("run", "Run the stages of a scene whose results are not up to date");
   declare_scene(*run, asked);
+  run->add_flag("--plan", asked.request.plan,
+                "Prepare the domain and print points, memory, steps and the time to expect; run no solver");
   run->callback([&] { asked.command = [&] { return run_scene(scene_request(asked)); }; });
   CLI::App* check = app.add_subcommand("check", "Every fault of all stages in one listing; writes nothing");
   declare_scene(*check, asked);
@@ -152,8 +157,12 @@ int guarded(int argc, char** argv) {
   }
   if (asks_version) return fmt::print("talus {}\n", version()), 0;
   if (!asked.command) throw RecipeError(Fault{"no command was given", "", "See talus --help"});
-  if (asked.request.quiet) set_verbosity(Verbosity::quiet);
-  if (asked.request.verbose) set_verbosity(Verbosity::verbose);
+  Context& own = context();
+  if (asked.request.quiet) own.verbosity = Verbosity::quiet;
+  if (asked.request.verbose) own.verbosity = Verbosity::verbose;
+  own.threads = asked.request.threads;
+  own.network = asked.request.network;
+  if (!app.got_subcommand("data")) watch_for_interrupts("talus");
   return asked.command();
 }
 
@@ -161,14 +170,13 @@ int guarded(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   report_crashes("talus");
-  try {
-    return guarded(argc, argv);
-  } catch (const Error& error) {
-    for (const Fault& fault : error.faults()) log_error("talus: " + to_string(fault));
-    return static_cast<int>(error.code());
-  } catch (const std::exception& error) {
-    log_error(fmt::format("talus: {} (this is a bug). Please report it, with the recipe and the version: {}",
-                          error.what(), version()));
-  }
-  return static_cast<int>(ExitCode::bug);
+  h5::prepare_library();
+  Context own;
+  const BindContext bind(own);
+  int code = 0;
+  const StageOutcome outcome = outcome_of([&] {
+    code = guarded(argc, argv);
+    return std::vector<std::filesystem::path>{};
+  });
+  return outcome.code == ExitCode::success ? code : report_faults("talus", outcome);
 }

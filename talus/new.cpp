@@ -59,34 +59,43 @@ std::string first_recipe(const NewScene& scene, const Reading& reading) {
 }
 
 /// The first stage on the two models alone, into a folder that goes again.
-Outcome prepare(const NewScene& scene, const Reading& reading, const fs::path& folder) {
+Said prepare(const NewScene& scene, const Reading& reading, const fs::path& folder) {
   Request request;
   request.recipe = folder / "recipe.toml";
   request.out = request.shown = folder / "out";
   write_text(request.recipe, first_recipe(scene, reading));
-  return run_stage_program(request, "preprocess", {}, Keep::everything);
+  Said said = call_quietly("preprocess", call_of(request, "preprocess"));
+  stop_if_interrupted("comparing the models");
+  return said;
 }
 
-bool asks_for(const Outcome& outcome, const char* key) { return outcome.err.find(key) != std::string::npos; }
+bool succeeded(const Said& said) { return said.outcome.code == ExitCode::success; }
+
+/// Whether a fault or a warning names a key as its remedy.
+bool asks_for(const Said& said, const char* key) {
+  const auto& [outcome, lines] = said;
+  return std::any_of(outcome.faults.begin(), outcome.faults.end(),
+                     [&](const Fault& fault) { return to_string(fault).find(key) != std::string::npos; }) ||
+         std::any_of(lines.begin(), lines.end(),
+                     [&](const auto& line) { return line.second.find(key) != std::string::npos; });
+}
 
 /// Prepares the two models as far as they can be; what that takes is returned. Throws with the stage's own words where
 /// it refuses them.
 Reading compare_models(const NewScene& scene, const fs::path& folder) {
   Reading reading;
-  Outcome outcome = prepare(scene, reading, folder);
-  if (outcome.code != 0 && asks_for(outcome, "working_crs = \"utm\"")) {
+  Said said = prepare(scene, reading, folder);
+  if (!succeeded(said) && asks_for(said, "working_crs = \"utm\"")) {
     reading.utm = true;
-    outcome = prepare(scene, reading, folder);
+    said = prepare(scene, reading, folder);
   }
-  if (asks_for(outcome, "mode = \"apply\"")) {  // also a warning, of a run that went through
+  if (asks_for(said, "mode = \"apply\"")) {  // also a warning, of a run that went through
     const Reading aligned{reading.utm, true};
-    const Outcome second = prepare(scene, aligned, folder);
-    if (second.code == 0) return aligned;
-    outcome = prepare(scene, reading, folder);
+    if (succeeded(prepare(scene, aligned, folder))) return aligned;
+    said = prepare(scene, reading, folder);
   }
-  if (outcome.code == 0) return reading;
-  std::vector<std::string> said = lines_said(outcome.err);
-  refuse(scene, said.empty() ? "talus-preprocess ended without a word" : said.back(),
+  if (succeeded(said)) return reading;
+  refuse(scene, to_string(said.outcome.faults.back()),
          "Look at both in a GIS: the first must be the ground before the slide, the second after it");
 }
 
@@ -197,7 +206,7 @@ int new_scene(const NewScene& scene) {
   write_text(scene.recipe, recipe_text(scene, found.slide, reading));
   log_info(fmt::format("{:.0f} m3 failed. {}", found.slide.volume, way_words(found.slide)));
   log_info(fmt::format("Read it, then: talus run {}", scene.recipe.string()));
-  fmt::print("{}\n", scene.recipe.string());
+  print_results({scene.recipe});
   return 0;
 }
 

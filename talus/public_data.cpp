@@ -3,8 +3,12 @@
 #include "talus/public_data.hpp"
 
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -17,8 +21,8 @@
 #include "common/map/sum.hpp"
 #include "common/recipe/suggest.hpp"
 #include "common/recipe/toml.hpp"
+#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
-#include "talus/child.hpp"
 #include "talus/temporary_folder.hpp"
 
 namespace talus::command {
@@ -173,6 +177,19 @@ void check_bytes(const fs::path& path, const DataFile& file, bool exact) {
   log_warning(fmt::format("{} ({}); number of cells, extremes and mean are the same. --exact refuses it", what, which));
 }
 
+/// Runs a program to its end. True where it ended well.
+bool run_to_end(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t process = -1;
+  if (::posix_spawn(&process, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) return false;
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
 void fetch(const std::string& url, const fs::path& file) {
   const char* const curl = "/usr/bin/curl";
   if (!fs::exists(curl))
@@ -180,11 +197,14 @@ void fetch(const std::string& url, const fs::path& file) {
                           fmt::format("apt-get install curl; or fetch {} by other means, and give its folder with "
                                       "--from DIR",
                                       url)});
-  const Outcome outcome = run_program(
-      curl, {"--fail", "--silent", "--show-error", "--location", "--output", file.string(), url}, Keep::everything);
-  if (outcome.code != 0)
-    throw DataError(Fault{url + ": cannot be fetched", outcome.err.substr(0, outcome.err.find('\n')),
-                          "Fetch it by other means, and give its folder with --from DIR"});
+  const TemporaryFolder folder("talus-data");
+  const fs::path errors = folder.path() / "errors";
+  if (run_to_end({curl, "--fail", "--silent", "--show-error", "--location", "--stderr", errors.string(), "--output",
+                  file.string(), url}))
+    return;
+  const std::string reason = text_if_there(errors).value_or("");
+  throw DataError(Fault{url + ": cannot be fetched", reason.substr(0, reason.find('\n')),
+                        "Fetch it by other means, and give its folder with --from DIR"});
 }
 
 /// The sources of an example in a folder, checked.

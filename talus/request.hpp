@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the command line asks of the stages, and their words for it.
+// What the command line asks of the stages.
 #pragma once
 
 #include <array>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "common/stage/depends.hpp"
-#include "talus/child.hpp"
+#include "common/stage/context.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus::command {
 
@@ -19,29 +20,37 @@ inline constexpr std::array<const char*, 3> stage_names{"preprocess", "solve", "
 struct Request {
   std::filesystem::path recipe;
   std::filesystem::path out = {};     ///< absolute
-  std::filesystem::path shown = {};   ///< the same as the user gave it, for what the stages say; empty: not given
-  std::vector<std::string> set = {};  ///< values that take the place of the recipe's
+  std::filesystem::path shown = {};   ///< the same as the user gave it, for the log and the results; empty: not given
+  std::vector<std::string> set = {};  ///< overrides of the recipe
   std::string on = "auto";            ///< where talus-solve runs
-  int threads = 0;                    ///< to take at most; 0: as many as a process may run at once
+  int threads = 0;                    ///< to use at most; 0: as many as a process may run at once
   bool network = false;
   bool verbose = false, quiet = false;
+  bool plan = false;  ///< print the plan of the solver instead of running it
 };
 
-/// Asks a stage for what it prints and does not do: --used, --depends. What it says on stderr is kept.
-Outcome ask(const Request& request, const std::string& stage, const std::string& question);
+/// The stage of a name in stage_names. Each call makes a stage with flags of its own.
+Stage stage_called(const std::string& name);
 
-/// Runs a stage. Its results go to stdout, what it says to stderr, unless they are kept.
-Outcome run_stage_program(const Request& request, const std::string& stage, const std::vector<std::string>& more,
-                          Keep keep);
+/// The call of a stage that a request asks for; talus-solve gets --on.
+StageCall call_of(const Request& request, const std::string& stage);
 
-/// The recipe's tables as the stages would use them (--used), in the order of stage_names. Throws RecipeError with the
-/// faults of all of them.
-std::vector<std::string> used_tables(const Request& request);
-
-/// What a stage reads and writes (--depends). Throws RecipeError.
+/// What a stage reads and writes. Throws RecipeError.
 Dependencies depends_of(const Request& request, const std::string& stage);
 
-/// Lines of stderr, each once, without "talus-solve: " in front.
-std::vector<std::string> lines_said(const std::string& text);
+/// What a stage has logged, and its end.
+struct Said {
+  StageOutcome outcome;
+  std::vector<std::pair<LogLevel, std::string>> lines = {};  ///< advice and warnings
+};
+
+/// Calls a stage; its log is kept instead of written.
+Said call_quietly(const std::string& stage, const StageCall& call);
+
+/// The faults that a stage finds in its tables, those of `known` left out.
+void add_table_faults(const Request& request, const std::string& stage, std::vector<Fault>& known);
+
+/// Throws RecipeError with the faults that all stages find in their tables.
+void require_tables(const Request& request);
 
 }  // namespace talus::command

@@ -2,48 +2,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "talus/run.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 
 #include "common/ensemble/names.hpp"
 #include "common/ensemble/options.hpp"
-#include "common/recipe/overrides.hpp"
-#include "common/stage/stage.hpp"
-#include "talus/freshness.hpp"
+#include "common/stage/output_lock.hpp"
 
 namespace talus::command {
 namespace fs = std::filesystem;
 namespace {
-
-/// One command at a time works in a folder of results; make -C pipelines takes the same lock. Where a file system knows
-/// no locks, the stages say so. The lock goes with the process, whatever ends it.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& out) {
-    make_folder(out / ".inputs");
-    const fs::path file = out / ".inputs" / "lock";
-    descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-    ::close(descriptor_);
-    throw DataError(Fault{out.string() + ": another talus run, or make -C pipelines, is at work there",
-                          "two that write into one folder would mix their results",
-                          "Wait for it or end it, or write elsewhere with --out DIR"});
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-
- private:
-  int descriptor_;
-};
 
 bool lies_in(const fs::path& file, const fs::path& folder) {
   const fs::path below = file.lexically_relative(folder);
@@ -89,35 +58,27 @@ std::vector<std::string> needed_stages(const Request& request, const recipe::Rec
   return stages;
 }
 
-/// A survey that the scores want and that is not there is made with the domain.
-void look_for_survey(const Request& request, Verdict& verdict) {
-  if (!verdict.run_because.empty()) return;
-  for (const fs::path& input : depends_of(request, "postprocess").inputs)
-    if (lies_in(input, request.out / "survey") && !fs::exists(input))
-      verdict.run_because = fmt::format("{} is missing", input.string());
+/// Calls a stage, and reports what it ends with.
+int run_one(const std::string& stage, const StageCall& call) {
+  stop_if_interrupted("running the stages");
+  const Stage program = stage_called(stage);
+  const StageOutcome outcome = call_stage(program, call);
+  if (outcome.code == ExitCode::success) print_results(outcome.results);
+  return report_faults(program.name, outcome);
 }
 
-int bring_up_to_date(const Request& request, const recipe::Recipe& recipe, const std::string& stage,
-                     const std::string& table) {
-  const StageState state = state_of(request, stage, table);
-  Verdict verdict = judge(request, recipe, state);
-  if (stage == "preprocess") look_for_survey(request, verdict);
-  if (verdict.run_because.empty()) {
-    note(request, state);
-    const fs::path& result = state.depends.results.front();
-    std::error_code ignored;  // a note that is younger than the result would say that it is stale
-    fs::last_write_time(request.out / ".inputs" / (stage + ".toml"), fs::last_write_time(result), ignored);
-    log_info(fmt::format("{}: {} is up to date", stage, result.filename().string()));
-    if (!verdict.remark.empty()) log_warning(verdict.remark);
-    fmt::print("{}\n", result.string());
-    std::fflush(stdout);
-    return 0;
-  }
-  log_info(fmt::format("{}: {}", stage, verdict.run_because));
-  note(request, state);
-  const std::vector<std::string> more =
-      stage == "solve" ? std::vector<std::string>{"--resume"} : std::vector<std::string>{};
-  return run_stage_program(request, stage, more, Keep::nothing).code;
+int bring_up_to_date(const Request& request, const std::string& stage) {
+  StageCall call = call_of(request, stage);
+  call.if_outdated = true;
+  if (stage == "solve") call.flags.emplace_back("--resume", "");
+  return run_one(stage, call);
+}
+
+/// What talus-solve --plan prints.
+int print_plan(const Request& request) {
+  StageCall call = call_of(request, "solve");
+  call.flags.emplace_back("--plan", "");
+  return run_one("solve", call);
 }
 
 /// Where a stability.toml stands beside recipe.toml, what it finds is what the recipe lets go: it runs first.
@@ -129,29 +90,25 @@ int search_first(const Request& request) {
   before.out = request.out / "stability";
   before.shown = request.shown.empty() ? before.out : request.shown / "stability";
   before.set.clear();
+  before.plan = false;
   log_info(fmt::format("{}: it runs first, into {}", search.string(), before.out.string()));
   return run_scene(before);
 }
 
 }  // namespace
 
-StageState state_of(const Request& request, const std::string& stage, const std::string& table) {
-  return {stage, depends_of(request, stage), table};
-}
-
 int run_scene(const Request& request) {
   const bool inner = request.recipe.filename() == "stability.toml";
-  const std::vector<std::string> tables = used_tables(request);
-  recipe::set_overrides(request.set);
-  const recipe::Recipe recipe(request.recipe);
-  const FolderLock lock(request.out);
+  require_tables(request);
+  const recipe::Recipe recipe(request.recipe, request.set);
+  make_folder(request.out);
+  const OutputLock lock(request.out, "talus run");
   if (const int code = search_first(request); code != 0) return code;
-  recipe::set_overrides(request.set);
   for (const std::string& stage : needed_stages(request, recipe)) {
-    const auto number = std::find(stage_names.begin(), stage_names.end(), stage) - stage_names.begin();
-    const int code = bring_up_to_date(request, recipe, stage, tables[static_cast<std::size_t>(number)]);
-    if (code != 0) return code;
+    if (request.plan && stage != "preprocess") break;
+    if (const int code = bring_up_to_date(request, stage); code != 0) return code;
   }
+  if (request.plan) return print_plan(request);
   if (!inner) log_info(fmt::format("{}: results in {}", recipe.scene_name(), request.out.string()));
   return 0;
 }

@@ -152,16 +152,7 @@ void apply(toml::table& root, const std::string& override, const std::string& sh
   put(*table, value_below(names, value, shown), steps.size() - reached - 1, text_of(steps, reached));
 }
 
-std::vector<std::string>& given() {
-  static std::vector<std::string> overrides;
-  return overrides;
-}
-
 }  // namespace
-
-void set_overrides(std::vector<std::string> overrides) { given() = std::move(overrides); }
-
-const std::vector<std::string>& overrides() { return given(); }
 
 void apply_overrides(toml::table& root, const std::vector<std::string>& overrides, std::vector<Fault>& faults) {
   for (const std::string& override : overrides) {

@@ -11,8 +11,9 @@
 namespace talus::recipe {
 
 struct Recipe::Parsed {
-  std::filesystem::path file;  ///< absolute
-  std::string shown;           ///< as the user wrote it, for messages
+  std::filesystem::path file;          ///< absolute
+  std::string shown;                   ///< as the user wrote it, for messages
+  std::vector<std::string> overrides;  ///< the values of the constructor, as they were given
   toml::table root;
 };
 
@@ -23,7 +24,7 @@ inline constexpr std::string_view known_tables[] = {"scene",    "preprocess", "s
 /// "recipe.toml:12:3", or "--set key=value" where the value was given so
 std::string place(const std::string& file, const toml::source_region& source);
 
-/// Puts the values of set_overrides() into a parsed recipe. What cannot be put in adds to `faults`.
+/// Puts the values of a recipe's constructor into a parsed recipe. What cannot be put in adds to `faults`.
 void apply_overrides(toml::table& root, const std::vector<std::string>& overrides, std::vector<Fault>& faults);
 
 /// Reads `stage` from `root`; the faults, in the order of the file, are added to `faults` when it ends.

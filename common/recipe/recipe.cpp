@@ -57,10 +57,11 @@ std::string place(const std::string& file, const toml::source_region& source) {
   return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
 }
 
-Recipe::Recipe(const fs::path& file) : parsed_(std::make_unique<Parsed>()) {
+Recipe::Recipe(const fs::path& file, const std::vector<std::string>& overrides) : parsed_(std::make_unique<Parsed>()) {
   parsed_->root = parse(file);
+  parsed_->overrides = overrides;
   std::vector<Fault> faults;
-  apply_overrides(parsed_->root, overrides(), faults);
+  apply_overrides(parsed_->root, overrides, faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
   parsed_->file = fs::absolute(file).lexically_normal();
   parsed_->shown = file.string();
@@ -81,6 +82,8 @@ Recipe Recipe::with(const std::vector<std::string>& values) const {
 }
 
 const fs::path& Recipe::file() const { return parsed_->file; }
+
+const std::vector<std::string>& Recipe::overrides() const { return parsed_->overrides; }
 
 std::string Recipe::scene_name() const {
   std::string name = scene_of(parsed_->root).name;

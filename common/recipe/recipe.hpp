@@ -126,12 +126,19 @@ void find_unmet(Options& options, std::vector<Fault>& faults) {
 /// A parsed recipe file. Throws RecipeError when the file is missing or is not TOML (with line and column).
 class Recipe {
  public:
-  explicit Recipe(const std::filesystem::path& file);
+  /// `overrides` replace values of the file; the last of several wins. Each is "key=value", the key with all its tables
+  /// and items of lists counted from 0 ("solve.material.density_kg_m3", "solve.part[0].release"), the value in TOML; a
+  /// value that is not TOML and begins like no quoted text, list or table is text. Missing tables are made, missing
+  /// items of lists are not. The values are checked like the file's. Messages name "--set key=value" instead of file
+  /// and line.
+  explicit Recipe(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
   Recipe(Recipe&& other) noexcept;
   ~Recipe();
-  /// The recipe with other values, each "key=value" as set_overrides() takes them. Throws RecipeError: what cannot be
+  /// The recipe with other values, each "key=value" as the constructor takes them. Throws RecipeError: what cannot be
   /// put in.
   Recipe with(const std::vector<std::string>& values) const;
+  /// The overrides of the constructor, as they were given.
+  const std::vector<std::string>& overrides() const;
   const std::filesystem::path& file() const;
   std::string scene_name() const;  ///< [scene] name, or the file's stem
   std::string title() const;       ///< [scene] title, or the name

@@ -5,20 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 namespace talus {
 namespace {
 
-struct Shown {
-  std::string path, message, report;
-};
-
-/// The longest path first.
-std::vector<Shown>& known() {
-  static std::vector<Shown> paths;
-  return paths;
-}
+thread_local ShownPaths* shown_here = nullptr;
 
 bool of_a_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-' || c == '/' ||
@@ -34,14 +26,33 @@ bool stands_at(std::string_view text, std::size_t at, std::string_view path) {
          (text[end] == '.' && (end + 1 == text.size() || text[end + 1] == ' '));
 }
 
-std::string replaced(const std::string& text, std::string Shown::*shown) {
+/// What no name of a path holds, for the end of one that stands in a text.
+bool ends_path(char c) {
+  return std::isspace(static_cast<unsigned char>(c)) != 0 ||
+         std::string_view("\"',;()[]<>|").find(c) != std::string_view::npos;
+}
+
+}  // namespace
+
+void ShownPaths::show_as(const std::filesystem::path& path, const std::string& shown, const std::string& in_report) {
+  std::string plain = path.lexically_normal().string();
+  while (plain.size() > 1 && plain.back() == '/') plain.pop_back();
+  if (plain.size() < 2 || plain.front() != '/') return;
+  const std::lock_guard lock(mutex_);
+  std::erase_if(known_, [&](const Shown& one) { return one.path == plain; });
+  const auto shorter = [&](const Shown& one) { return one.path.size() < plain.size(); };
+  known_.insert(std::find_if(known_.begin(), known_.end(), shorter), {plain, shown, in_report});
+}
+
+std::string ShownPaths::replaced(const std::string& text, std::string Shown::*shown) const {
+  const std::lock_guard lock(mutex_);
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
     const bool begins = text[at] == '/' && (at == 0 || !of_a_name(text[at - 1]));
-    const auto found = !begins ? known().end() : std::find_if(known().begin(), known().end(), [&](const Shown& one) {
+    const auto found = !begins ? known_.end() : std::find_if(known_.begin(), known_.end(), [&](const Shown& one) {
       return stands_at(text, at, one.path);
     });
-    if (found == known().end()) {
+    if (found == known_.end()) {
       result += text[at++];
       continue;
     }
@@ -54,29 +65,27 @@ std::string replaced(const std::string& text, std::string Shown::*shown) {
   return result;
 }
 
-/// What no name of a path holds, for the end of one that stands in a text.
-bool ends_path(char c) {
-  return std::isspace(static_cast<unsigned char>(c)) != 0 ||
-         std::string_view("\"',;()[]<>|").find(c) != std::string_view::npos;
+std::string ShownPaths::in_message(const std::string& text) const { return replaced(text, &Shown::message); }
+std::string ShownPaths::in_report(const std::string& text) const { return replaced(text, &Shown::report); }
+
+ShownPaths& shown_paths_of_other_threads() {
+  static ShownPaths* const shared = new ShownPaths;
+  return *shared;
 }
 
-}  // namespace
+ShownPaths& shown_paths() { return shown_here != nullptr ? *shown_here : shown_paths_of_other_threads(); }
+
+BindShownPaths::BindShownPaths(ShownPaths& paths) : previous_(std::exchange(shown_here, &paths)) {}
+BindShownPaths::~BindShownPaths() { shown_here = previous_; }
 
 void show_path_as(const std::filesystem::path& path, const std::string& shown, const std::string& in_report) {
-  std::string plain = path.lexically_normal().string();
-  while (plain.size() > 1 && plain.back() == '/') plain.pop_back();
-  if (plain.size() < 2 || plain.front() != '/') return;
-  std::erase_if(known(), [&](const Shown& one) { return one.path == plain; });
-  const auto shorter = [&](const Shown& one) { return one.path.size() < plain.size(); };
-  known().insert(std::find_if(known().begin(), known().end(), shorter), {plain, shown, in_report});
+  shown_paths().show_as(path, shown, in_report);
 }
 
-void forget_shown_paths() { known().clear(); }
-
-std::string with_shown_paths(const std::string& text) { return replaced(text, &Shown::message); }
+std::string with_shown_paths(const std::string& text) { return shown_paths().in_message(text); }
 
 std::string without_absolute_paths(const std::string& text) {
-  const std::string relative = replaced(text, &Shown::report);
+  const std::string relative = shown_paths().in_report(text);
   std::string result;
   for (std::size_t at = 0; at < relative.size();) {
     const char before = at == 0 ? ' ' : relative[at - 1];

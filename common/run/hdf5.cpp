@@ -14,6 +14,7 @@
 
 #include "common/error.hpp"
 #include "common/run/hdf5_id.hpp"
+#include "common/run/prepare_hdf5.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -40,21 +41,6 @@ std::string reason() {
   return lines.empty() ? std::string() : lines.front();
 }
 
-/// Before the first call of HDF5. Its own error printing goes: ours says it once. Its clean-up at exit goes too: a file
-/// that a full disk kept from closing makes it write again and crash, and every file here is closed by its owner
-/// anyway.
-void prepare_library() {
-  static const bool once = [] {
-    // Its own locks fail where a file system has none, and guard nothing here: files are read under their final names,
-    // when they are whole, and the output folder has a lock (common/stage/output_lock.hpp).
-    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
-    H5dont_atexit();
-    return true;
-  }();
-  static_cast<void>(once);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 /// After a file that HDF5 could not close. H5dont_atexit() does not hold back the C++ library of HDF5, which GDAL
 /// brings: where it is unloaded it ends HDF5, which crashes over that file. So the process ends before libraries are
 /// unloaded, with the exit code it has.
@@ -69,6 +55,21 @@ void end_before_libraries() {
 }
 
 }  // namespace
+
+/// Before the first call of HDF5. Its own error printing goes: ours says it once. Its clean-up at exit goes too: a file
+/// that a full disk kept from closing makes it write again and crash, and every file here is closed by its owner
+/// anyway.
+void prepare_library() {
+  static const bool once = [] {
+    // Its own locks fail where a file system has none, and guard nothing here: files are read under their final names,
+    // when they are whole, and the output folder has a lock (common/stage/output_lock.hpp).
+    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
+    H5dont_atexit();
+    return true;
+  }();
+  static_cast<void>(once);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 File File::create(const std::filesystem::path& path, Naming naming) {
   prepare_library();

@@ -71,17 +71,14 @@ void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words)
   app.add_option("recipe", words.recipe, "The scene's recipe (TOML)")->type_name("recipe.toml");
   app.add_option("--out", words.out, "Folder for the results, made if missing (default: out, beside the recipe)")
       ->type_name("DIR");
-  app.add_option("--set", line.set,
+  app.add_option("--set", line.call.set,
                  "A value that takes the place of the recipe's (solve.end_time_s=60); may be given many times")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  app.add_flag("--check", line.check_only, "Read and test everything cheap; compute and write nothing");
+  app.add_flag("--check", line.call.check_only, "Read and test everything cheap; compute and write nothing");
+  app.add_flag("--if-outdated", line.call.if_outdated, "Do nothing but print the results where they are up to date");
   app.add_flag("--template", line.print_template,
                "Print this stage's recipe table with every key, its default and its meaning");
-  app.add_flag("--used", line.print_used,
-               "Print [scene] and this stage's recipe table as they would be used, defaults filled in; run nothing");
-  app.add_flag("--depends", line.print_depends,
-               "Print what this stage reads, as rules for make; run and write nothing");
   app.add_option("--threads", line.threads,
                  fmt::format("Threads to take at most (default: as many as this process may run at once, {} here)",
                              usable_threads()))
@@ -101,13 +98,10 @@ void return_recipe(Words& words) {
       std::swap(words.recipe, own.value);
 }
 
-/// Hands the stage's own flags over to the stage.
-void set_own(const Words& words, CommandLine& line) {
-  for (const Own& own : words.own) {
-    if (own.option->count() == 0) continue;
-    own.flag.set(own.value);
-    line.writes_nothing = line.writes_nothing || own.flag.writes_nothing;
-  }
+/// The stage's own flags.
+void take_own(const Words& words, CommandLine& line) {
+  for (const Own& own : words.own)
+    if (own.option->count() > 0) line.call.flags.emplace_back(own.flag.name, own.value);
 }
 
 }  // namespace
@@ -139,10 +133,9 @@ std::variant<CommandLine, Answer> parse_command_line(int argc, char** argv, cons
   }
   if (words.version) return Answer{stage.name + " " + version() + "\n"};
   return_recipe(words);
-  line.writes_nothing = line.check_only;
-  set_own(words, line);
-  line.recipe = words.recipe;
-  line.out = words.out;
+  take_own(words, line);
+  line.call.recipe = words.recipe;
+  line.call.out = words.out;
   if (words.quiet) line.verbosity = Verbosity::quiet;
   if (words.verbose) line.verbosity = Verbosity::verbose;
   return line;

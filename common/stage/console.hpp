@@ -11,8 +11,13 @@ namespace talus {
 
 enum class Verbosity { quiet, normal, verbose };
 
+/// Of the calling thread's context (context.hpp).
 void set_verbosity(Verbosity verbosity);
 Verbosity verbosity();
+
+enum class LogLevel;
+/// A line on stderr, with the prefix of its kind. Contexts without a sink of their own write by it.
+void write_to_stderr(LogLevel level, const std::string& text);
 
 /// Take a drawn progress line off the terminal, so that the next output starts on a clean line.
 void clear_progress_line();

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/stage/context.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 
@@ -64,7 +65,11 @@ void in_threads(std::size_t count, const std::string& doing, const std::function
   {
     std::vector<std::jthread> others;
     try {
-      while (others.size() + 1 < wanted) others.emplace_back([&] { shared.take_all(); });
+      while (others.size() + 1 < wanted)
+        others.emplace_back([&, &here = context()] {
+          const BindContext bind(here);
+          shared.take_all();
+        });
     } catch (const std::system_error&) {  // the system gives no more threads: those that there are do the work
     }
     shared.take_all();

@@ -5,14 +5,13 @@
 #include <cerrno>
 #include <system_error>
 
+#include "common/stage/context.hpp"
 #include "common/stage/write_fault.hpp"
 #include "common/whole_text.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
 namespace {
-
-bool allowed_by_command_line = false;
 
 const char* kind_of(fs::file_type type) {
   switch (type) {
@@ -49,7 +48,7 @@ std::optional<std::string> text_if_there(const fs::path& file) {
   });
 }
 
-bool network_allowed() { return allowed_by_command_line; }
-void allow_network(bool allowed) { allowed_by_command_line = allowed; }
+bool network_allowed() { return context().network; }
+void allow_network(bool allowed) { context().network = allowed; }
 
 }  // namespace talus

@@ -21,7 +21,7 @@ void require_read(const std::ios& stream, const std::filesystem::path& file);
 /// cannot be read, or is longer than 64 MB.
 std::optional<std::string> text_if_there(const std::filesystem::path& file);
 
-/// True where inputs may name places on a network (--network).
+/// True where inputs may name places on a network (--network), in the calling thread's context.
 bool network_allowed();
 void allow_network(bool allowed);
 

@@ -12,7 +12,9 @@
 #include <cstring>
 #include <exception>
 #include <mutex>
+#include <set>
 
+#include "common/stage/context.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -21,7 +23,8 @@ namespace {
 volatile std::sig_atomic_t signals_seen = 0;
 std::atomic<const char*> own_end{nullptr};  ///< what is saved before the end; null: nothing is, and the grace counts
 itimerval grace_left{};
-std::array<char, 128> program_name{};
+std::atomic<const char*> program_name{"talus"};
+std::atomic<bool> signals_watched{false};
 
 /// Paths that a handler may read at any time: their memory is never given back.
 struct Slot {
@@ -50,7 +53,7 @@ extern "C" void talus_on_signal(int) {
   signals_seen = 1;
   if (const char* saved = own_end.load(); saved != nullptr) {
     say("\n");
-    say(program_name.data());
+    say(program_name.load());
     say(": interrupted; ");
     say(saved);
     say(" (a second Ctrl-C ends it at once)\n");
@@ -62,7 +65,7 @@ extern "C" void talus_on_signal(int) {
 extern "C" void talus_on_end_of_grace(int) {
   if (own_end.load() != nullptr) return;
   say("\n");
-  say(program_name.data());
+  say(program_name.load());
   say(": ended in the middle of its work (interrupted). What carries a final name is whole; run the stage again\n");
   end_at_once();
 }
@@ -88,8 +91,17 @@ bool is_ignored(int number) {
 
 }  // namespace
 
+void name_for_interrupts(const std::string& program) {
+  static std::mutex mutex;
+  static std::set<std::string> names;  // a handler may read one at any time: none is ever removed
+  const std::lock_guard lock(mutex);
+  program_name = names.insert(program).first->c_str();
+}
+
 void watch_for_interrupts(const std::string& program, double grace) {
-  program.copy(program_name.data(), program_name.size() - 1);
+  name_for_interrupts(program);
+  context().heed_signals();
+  signals_watched = true;
   grace_left.it_value.tv_sec = static_cast<time_t>(grace);
   grace_left.it_value.tv_usec = static_cast<suseconds_t>((grace - std::floor(grace)) * 1e6);
   handle(SIGALRM, talus_on_end_of_grace);
@@ -98,7 +110,11 @@ void watch_for_interrupts(const std::string& program, double grace) {
   if (!is_ignored(SIGHUP)) handle(SIGHUP, talus_on_signal);  // nohup
 }
 
-bool interrupted() { return signals_seen != 0; }
+bool signals_are_watched() { return signals_watched; }
+
+bool signal_came() { return signals_seen != 0; }
+
+bool interrupted() { return context().is_interrupted(); }
 
 void stop_if_interrupted(const std::string& doing) {
   if (interrupted())
@@ -106,16 +122,18 @@ void stop_if_interrupted(const std::string& doing) {
         {"stopped while " + doing, "interrupted", "What carries a final name is whole; run the stage again"});
 }
 
-OwnEnd::OwnEnd(const char* saved) {
+OwnEnd::OwnEnd(const char* saved) : acts_(context().heeds_signals()) {
+  if (!acts_) return;
   own_end.store(saved);
   const itimerval never{};
-  if (interrupted()) ::setitimer(ITIMER_REAL, &never, nullptr);
+  if (signal_came()) ::setitimer(ITIMER_REAL, &never, nullptr);
 }
 
 OwnEnd::~OwnEnd() {
+  if (!acts_) return;
   own_end.store(nullptr);
   const bool saved = std::uncaught_exceptions() > 0;  // on the way out, which may take as long as it takes
-  if (interrupted() && !saved) ::setitimer(ITIMER_REAL, &grace_left, nullptr);
+  if (signal_came() && !saved) ::setitimer(ITIMER_REAL, &grace_left, nullptr);
 }
 
 void doom(const std::filesystem::path& path) {

@@ -16,14 +16,13 @@
 #include <thread>
 
 #include "common/error.hpp"
+#include "common/stage/context.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-
-int asked_for = 0;  // by --threads
 
 /// The first words of a small file of the system as numbers; "max" and what is missing: empty.
 std::optional<double> number_in(const fs::path& file, int word = 0) {
@@ -103,9 +102,9 @@ int usable_threads() {
   return static_cast<int>(std::max(1.0, std::min(threads, std::ceil(least_limit("cpu", processors_in)))));
 }
 
-int thread_limit() { return asked_for > 0 ? asked_for : usable_threads(); }
+int thread_limit() { return context().threads > 0 ? context().threads : usable_threads(); }
 
-void set_thread_limit(int threads) { asked_for = threads; }
+void set_thread_limit(int threads) { context().threads = threads; }
 
 double memory_of_machine(std::string_view name) {
   std::ifstream stream("/proc/meminfo");

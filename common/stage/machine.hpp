@@ -12,10 +12,11 @@ namespace talus {
 /// (cpu.max, rounded up) and what the machine has; at least 1.
 int usable_threads();
 
-/// Threads that this process takes at most: what --threads gave, else usable_threads().
+/// Threads that the calling thread's context takes at most: what --threads gave, else usable_threads().
 int thread_limit();
 
-/// Sets the number of threads to take at most; 0 = usable_threads(). More than are usable are taken as they are.
+/// Sets the number of threads that the calling thread's context takes at most; 0 = usable_threads(). More than are
+/// usable are taken as they are.
 void set_thread_limit(int threads);
 
 /// What the system says of its memory under a name of /proc/meminfo, as "MemTotal" or "MemAvailable" [bytes]. Infinity

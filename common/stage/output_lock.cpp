@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/context.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/stage.hpp"
 
@@ -25,7 +26,6 @@ namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
-std::atomic<bool> lock_held{false};
 std::atomic<unsigned> locks_taken{0};
 
 std::string words_of(int code) { return std::generic_category().message(code); }
@@ -74,8 +74,9 @@ std::string holder(int descriptor) {
                    "Wait for it or end it, or write elsewhere with --out DIR"});
 }
 
-/// Locks the file of this name. One that its holder removed in between is no lock for those who come later.
-int lock(const fs::path& file) {
+/// Locks the file of this name. One that its holder removed in between is no lock for those who come later. `is_held`
+/// stays false where the file system knows no locks.
+int lock(const fs::path& file, bool& is_held) {
   while (true) {
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0) refuse_folder(file, errno);
@@ -94,7 +95,7 @@ int lock(const fs::path& file) {
     }, there{};
     if (::fstat(descriptor, &mine) == 0 && ::stat(file.c_str(), &there) == 0 && mine.st_ino == there.st_ino) {
       ++locks_taken;
-      lock_held = true;
+      is_held = true;
       return descriptor;
     }
     ::close(descriptor);
@@ -111,26 +112,32 @@ void write_holder(const fs::path& file, int descriptor, const std::string& progr
   const int code = errno != 0 ? errno : ENOSPC;
   ::unlink(file.c_str());
   ::close(descriptor);
-  lock_held = false;
   refuse_folder(file, code);
 }
 
 }  // namespace
 
 OutputLock::OutputLock(const fs::path& folder, const std::string& program, const std::string& part)
-    : file_(folder / (part.empty() ? ".talus.lock" : ".talus." + part + ".lock")), descriptor_(lock(file_)) {
+    : context_(context()), file_(lock_file_of(folder, part)) {
+  bool is_held = false;
+  descriptor_ = lock(file_, is_held);
   write_holder(file_, descriptor_, program);
+  context_.add_lock(file_, is_held);
   doom(file_);
 }
 
 OutputLock::~OutputLock() {
   ::unlink(file_.c_str());  // while it is still locked: who waits for this one looks for it again
   spare(file_);
-  lock_held = false;
+  context_.remove_lock(file_);
   ::close(descriptor_);
 }
 
-bool holds_output_lock() { return lock_held; }
+fs::path lock_file_of(const fs::path& folder, const std::string& part) {
+  return folder / (part.empty() ? ".talus.lock" : ".talus." + part + ".lock");
+}
+
+bool holds_output_lock() { return context().holds_a_lock(); }
 
 unsigned output_locks_taken() { return locks_taken; }
 

@@ -8,9 +8,12 @@
 
 namespace talus {
 
+class Context;
+
 /// The lock of an output folder, ".talus.lock" in it, which names its holder. Processes that do parts of a stage's work
 /// have one each, ".talus.PART.lock": their files have names of their own. The system lets go of it when the process
-/// ends, however it ends; a file that a killed process left is no lock. Reading what lies in the folder needs none.
+/// ends, however it ends; a file that a killed process left is no lock. Reading what lies in the folder needs none. The
+/// lock belongs to the calling thread's context: stages that run in the context of its holder take no second one.
 class OutputLock {
  public:
   /// Takes the lock for `program`, and for the `part` of its work where that is not empty. Throws DataError: another
@@ -23,12 +26,16 @@ class OutputLock {
   ~OutputLock();
 
  private:
+  Context& context_;
   std::filesystem::path file_;
-  int descriptor_;
+  int descriptor_ = -1;
 };
 
-/// True while this process holds the lock of its output folder: a partial file there is then one that a killed process
-/// left.
+/// The file that is locked.
+std::filesystem::path lock_file_of(const std::filesystem::path& folder, const std::string& part = {});
+
+/// True while the calling thread's context holds the lock of an output folder: a partial file there is then one that a
+/// killed process left.
 bool holds_output_lock();
 
 /// How many such locks this process has taken: what it knows of a folder from an earlier one may be old.

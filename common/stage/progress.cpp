@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "common/stage/console.hpp"
+#include "common/stage/context.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -43,7 +44,9 @@ void clear_progress_line() {
   line_on_terminal = false;
 }
 
-Progress::Progress() : terminal_(::isatty(STDERR_FILENO) == 1), quiet_(verbosity() == Verbosity::quiet) {
+Progress::Progress()
+    : terminal_(context().logs_to_stderr() && ::isatty(STDERR_FILENO) == 1),
+      quiet_(context().logs_to_stderr() && verbosity() == Verbosity::quiet) {
   last_ = std::chrono::steady_clock::now();
 }
 
@@ -66,6 +69,8 @@ void Progress::update(const std::string& text) {
     std::fprintf(stderr, "\r%s\033[K",
                  text.substr(0, terminal_width()).c_str());  // a wrapped line could not be redrawn
     line_on_terminal = drawn_ = true;
+  } else if (!context().logs_to_stderr()) {
+    return context().log(LogLevel::progress, text);
   } else {
     std::fprintf(stderr, "%s\n", text.c_str());
   }

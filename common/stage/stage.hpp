@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one main() of the three programs: command line, log, exit codes, files written aside, Ctrl-C, progress line.
+// Stages as values, and what runs them: from a command line or from another program. Files written aside, Ctrl-C, log.
 #pragma once
 
 #include <chrono>
@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/stage/depends.hpp"
+#include "common/stage/freshness.hpp"
 
 namespace talus {
 
@@ -24,6 +25,7 @@ struct StageContext {
   std::string command_line;
   std::string part = {};  ///< of the stage's work that this process does ("0-250"); empty: all of it
   std::vector<std::filesystem::path> results = {};  ///< printed on stdout, one a line, at the end
+  Ingredients made_of = {};                         ///< what the used recipe says that the results are made of
 };
 
 /// A flag that one stage alone knows. The stage registers it and keeps its value where `set` puts it.
@@ -44,18 +46,56 @@ struct Stage {
   std::string examples;                                         ///< shown under --help
   std::vector<Flag> flags = {};                                 ///< its own flags, in the order of --help
   std::function<std::string()> template_toml;                   ///< for --template
-  std::function<std::string(const recipe::Recipe&)> used_toml;  ///< for --used: its table with the defaults filled in
-  std::function<Dependencies(const StageContext&)> depends;     ///< for --depends
+  std::function<std::string(const recipe::Recipe&)> used_toml;  ///< its tables with the defaults filled in
+  std::function<Dependencies(const StageContext&)> depends;     ///< the files that it reads and writes
+  std::function<std::string(const std::filesystem::path& result)> id_of = {};  ///< the id in a result; empty: none
   std::function<std::string()> part = {};  ///< a word for the part that the flags ask for; parts share a folder
   std::function<void(StageContext&)> run;
 };
 
-/// Parses the command line, runs the stage, prints faults on stderr and result paths on stdout. Returns the exit code.
-/// Options of every stage: recipe.toml, --out DIR (default: the recipe's folder / "out"), --check, --template, --used,
-/// --depends, --threads N, --on (which only a stage that runs kernels heeds), -v, -q, --help (exit codes and examples
-/// included),
-/// --version (with the commit); and those of stage.flags.
+/// A call of a stage, by its command line or by a program that links it.
+struct StageCall {
+  std::filesystem::path recipe = {};
+  std::filesystem::path out = {};                               ///< as given; empty: "out" beside the recipe
+  std::vector<std::string> set = {};                            ///< overrides of the recipe
+  std::vector<std::pair<std::string, std::string>> flags = {};  ///< of stage.flags: {"--on", "cpu"}, {"--resume", ""}
+  bool check_only = false;
+  bool if_outdated = false;  ///< results that are up to date are printed, not made again
+  std::string command = {};  ///< for the results; empty: made of the above
+};
+
+/// The end of a call.
+struct StageOutcome {
+  ExitCode code = ExitCode::success;
+  std::vector<Fault> faults = {};
+  std::vector<std::filesystem::path> results = {};
+};
+
+/// The `main` of a stage's program: parses the command line, runs the stage, prints faults on stderr and result paths
+/// on stdout. Returns the exit code. Options of every stage: recipe.toml, --out DIR (default: the recipe's folder /
+/// "out"), --set KEY=VALUE, --check, --if-outdated, --template, --threads N, --network, --on (which only a stage that
+/// runs kernels heeds), -v, -q, --help (exit codes and examples included), --version (with the commit); and those of
+/// stage.flags.
 int run_stage(int argc, char** argv, const Stage& stage);
+
+/// Runs a stage in the calling thread's context. It throws nothing and prints nothing but the log. The folder is locked
+/// unless the context has locked it.
+StageOutcome call_stage(const Stage& stage, const StageCall& call);
+
+/// The recipe and the folder of a call, its flags set; the folder is not made. Throws RecipeError.
+StageContext open_call(const Stage& stage, const StageCall& call);
+
+/// What `work` ends with: any exception as an outcome. `work` may return the results.
+StageOutcome outcome_of(const std::function<std::vector<std::filesystem::path>()>& work);
+
+/// The faults on stderr, each behind the program's name. Returns the exit code.
+int report_faults(const std::string& program, const StageOutcome& outcome);
+
+/// Result paths on stdout, one a line. Throws DataError where stdout takes none.
+void print_results(const std::vector<std::filesystem::path>& results);
+
+/// Words as a shell takes them.
+std::string command_text(const std::vector<std::string>& words);
 
 /// True once SIGINT or SIGTERM has come. A second one ends the process at once.
 bool interrupted();
@@ -98,12 +138,12 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 std::string sha256(const std::filesystem::path& path);
 std::string sha256_of_text(const std::string& text);
 
-/// [scene] and a stage's table as a recipe of their own: what --used prints. `options_toml` is the table.
+/// [scene] and a stage's table as a recipe of their own. `options_toml` is the table.
 std::string own_recipe(const recipe::Recipe& recipe, const std::string& options_toml);
 
 /// The text of `<stage>.used.toml`: the options with defaults filled in (recipe::to_used_toml marks those that were
-/// changed), and above them as comments version, command, inputs with their checksums, CRS, hardware, wall time (pairs
-/// of `facts`).
+/// changed), and above them as comments version, command, context.made_of and further inputs with their checksums, CRS,
+/// hardware, wall time (pairs of `facts`).
 std::string used_recipe(const StageContext& context, const Stage& stage, const std::string& options_toml,
                         const std::vector<std::filesystem::path>& inputs,
                         const std::vector<std::pair<std::string, std::string>>& facts);
@@ -129,8 +169,9 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Log lines on stderr (spdlog underneath): facts people read, warnings, and details under -v.
+/// Lines of the calling thread's log: facts people read, advice, warnings, and details under -v.
 void log_info(const std::string& text);
+void log_advice(const std::string& text);
 void log_warning(const std::string& text);
 void log_detail(const std::string& text);
 

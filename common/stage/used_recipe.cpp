@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "common/recipe/overrides.hpp"
 #include "common/recipe/values.hpp"
 #include "common/stage/stage.hpp"
 
@@ -36,9 +35,14 @@ std::string used_recipe(const StageContext& context, const Stage& stage, const s
   text += comment("program", stage.name + " " + version());
   text += comment("command", context.command_line);
   text += comment("recipe", context.recipe.file().string() + "  " + checksum(context.recipe.file()));
-  for (const std::string& value : recipe::overrides()) text += comment("set", value);
-  for (const auto& input : inputs)
-    if (!input.empty()) text += comment("input", input.string() + "  " + checksum(input));
+  for (const std::string& value : context.recipe.overrides()) text += comment("set", value);
+  text += lines_of(context.made_of);
+  for (const auto& input : inputs) {
+    const auto noted = [&](const auto& one) { return one.first == input; };
+    const auto& known = context.made_of.inputs;
+    if (!input.empty() && std::none_of(known.begin(), known.end(), noted))
+      text += comment("input", input.string() + "  " + checksum(input));
+  }
   const auto tells_hardware = [](const auto& fact) { return fact.first == "hardware"; };
   if (std::none_of(facts.begin(), facts.end(), tells_hardware)) text += comment("hardware", hardware());
   for (const auto& [name, value] : facts) text += comment(name, value);
@@ -49,7 +53,7 @@ void write_used_recipe(StageContext& context, const Stage& stage, const std::str
                        const std::vector<std::filesystem::path>& inputs,
                        const std::vector<std::pair<std::string, std::string>>& facts) {
   const auto text = used_recipe(context, stage, options_toml, inputs, facts);
-  const auto path = context.out / (stage.table + (context.part.empty() ? "" : "." + context.part) + ".used.toml");
+  const auto path = used_recipe_file(stage, context);
   write_text(path, text);
   context.results.push_back(path);
 }

@@ -88,7 +88,8 @@ Json stages_json(const std::vector<StageText>& stages) {
     Json json{{"stage", stage.stage}, {"missing", !stage.text}, {"facts", Json::array()}, {"keys", Json::array()}};
     if (stage.text) {
       const auto used = recipe::read_used_recipe(*stage.text, stage.stage + ".used.toml");
-      for (const auto& [name, value] : used.facts) json["facts"].push_back({name, value});
+      for (const auto& [name, value] : used.facts)
+        if (name != "table" && name != "result" && name != "resolved") json["facts"].push_back({name, value});
       for (const auto& key : used.keys)
         json["keys"].push_back({{"table", key.table},
                                 {"key", key.key},

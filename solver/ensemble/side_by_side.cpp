@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "common/stage/context.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/parallel/alone.hpp"
 
@@ -18,7 +19,8 @@ void side_by_side(std::size_t count, const std::vector<AnyDevice>& devices,
   std::atomic<bool> failed{false};
   std::mutex mutex;
   std::exception_ptr failure;
-  const auto work = [&](const AnyDevice& device) {
+  const auto work = [&, &here = context()](const AnyDevice& device) {
+    const BindContext bind(here);
     const Alone alone;
     try {
       for (;;) {

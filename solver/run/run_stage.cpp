@@ -35,7 +35,7 @@ void report_profile(const RunSummary& summary, const AnyDevice& device, const st
 void log_findings(const Plan& plan) {
   say_warnings_of_domain(*plan.domain);
   for (const std::string& text : plan.warnings) log_warning(text);
-  for (const auto& [name, words] : plan.advice) log_info("advice: " + words);
+  for (const auto& [name, words] : plan.advice) log_advice(words);
 }
 
 /// The places of a run for its report: those of the domain without obstacles that the run leaves out, then sections,

@@ -151,13 +151,13 @@ test_set_values_take_the_place_of_the_recipes() {
   grep -qF 'postprocess.deposit_threshold_m=0.3' out/report.html || fail "the report does not name what was set"
 }
 
-test_set_values_count_in_used_and_depends() {
+test_set_values_are_noted() {
   scene
   cp before.asc other.asc
-  expect_exit 0 preprocess --used --set preprocess.before_dem=other.asc
-  grep -qF 'other.asc' stdout || fail "--used has the recipe's own value"
-  expect_exit 0 preprocess --depends --set preprocess.before_dem=other.asc
-  grep -qF 'other.asc' stdout || fail "--depends has the recipe's own value"
+  expect_exit 0 preprocess --set preprocess.before_dem=other.asc
+  grep -qF '# set: preprocess.before_dem=other.asc' out/preprocess.used.toml || fail "it is not said what was set"
+  grep -qF "# input: $TALUS_SCRATCH/other.asc  sha256 " out/preprocess.used.toml || fail "the input is not noted"
+  ! grep -qF '/before.asc' out/preprocess.used.toml || fail "the recipe's own value is noted"
 }
 
 test_gpu_that_is_not_there_is_refused() {

@@ -129,19 +129,20 @@ deviation = 0.5'
   expect_words 'unknown key "tild"'
 }
 
-test_depends_and_used_name_the_ensemble() {
+test_the_used_recipe_names_the_ensemble() {
   scene
-  expect_exit 0 preprocess --used
-  ! grep -q '^\[ensemble' stdout || fail "--used tells of an ensemble that is none"
+  expect_exit 0 preprocess
+  ! grep -q '^\[ensemble\|^# table: ensemble' out/preprocess.used.toml || fail "it tells of an ensemble that is none"
   printf '10\n20\n' | sed 's/$/,1/' >density.csv
   ensemble $'[[ensemble.vary]]\nkey = "solve.base.friction_angle_deg"\ndistribution = "table"\ntable = "density.csv"'
-  expect_exit 0 preprocess --used
-  grep -q '^key = "solve.base.friction_angle_deg"$' stdout || fail "--used does not tell what varies"
-  expect_exit 0 preprocess --depends
-  grep -qE '^out/domain\.vdb out/members\.h5: ' stdout || fail "--depends does not name members.h5"
-  grep -q '/density\.csv' stdout || fail "--depends does not name the table of the density"
-  expect_exit 0 preprocess
+  expect_exit 0 preprocess --if-outdated
+  expect_words 'preprocess: there is no members.h5'
+  grep -q '^key = "solve.base.friction_angle_deg"$' out/preprocess.used.toml || fail "it does not tell what varies"
   grep -q '^\[\[ensemble.vary\]\]' out/preprocess.used.toml || fail "the used recipe does not tell what varies"
+  local line
+  for line in '# table: ensemble  sha256 ' '# result: members.h5' '# input: .*/density\.csv  sha256 '; do
+    grep -q "^$line" out/preprocess.used.toml || fail "it has no line: $line"
+  done
 }
 
 test_ctrl_c_leaves_nothing_half() {

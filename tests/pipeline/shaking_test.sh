@@ -26,8 +26,6 @@ test_shaking_is_planned_recorded_and_listed() {
   expect_exit 0 preprocess
   expect_exit 0 solve --plan
   expect_words "shaking      101 samples from 0.5 to 1.5 s, up to 2.94 m/s2"
-  expect_exit 0 solve --depends
-  grep -q 'record.csv' stdout || fail "--depends does not name the accelerogram: $(<stdout)"
   expect_exit 0 solve
   grep -q "energy gain unknown; fastest point .* fall without loss unknown" stderr ||
     fail "the work of the shaking counts as a gain: $(grep sanity stderr)"

@@ -13,14 +13,13 @@ runs() {
   for stage in preprocess solve postprocess; do
     expected=up
     [[ " $* " != *" $stage "* ]] || expected=runs
-    if grep -qE "^$stage: [a-z0-9.]+ is up to date$" stderr; then
+    if grep -qE "^$stage: [a-z0-9./]+ is up to date$" stderr; then
       [[ $expected == up ]] || fail "$stage did not run"
     else
       [[ $expected == runs ]] || fail "$stage ran: $(grep "^$stage: " stderr)"
     fi
   done
   expect_stdout_paths
-  sleep 0.05   # file times are coarse
 }
 arguments=()
 change() { sed -i "$1" recipe.toml; }
@@ -43,21 +42,91 @@ test_each_part_of_the_recipe_reruns_its_stage_and_those_after_with_the_reason() 
   expect_exit 0 run
   change 's/^friction_angle_deg = 15.0/friction_angle_deg = 16.0/'
   runs solve postprocess
-  expect_words 'solve: [solve] or [scene] has changed'
+  expect_words 'solve: [solve] has changed: base.friction_angle_deg' 'run.h5 has changed'
   change 's/^thickness = .*/&\nname = "drawn"/'
   runs postprocess
   change 's/layer_height_m = 2.0/layer_height_m = 1.0/'
   runs preprocess solve postprocess
-  expect_words 'preprocess: [preprocess] or [scene] has changed'
-  touch survey.asc
-  runs postprocess
-  expect_words "survey.asc is newer than score.json"
-  touch before.asc
-  runs preprocess solve postprocess
+  expect_words 'preprocess: [preprocess] has changed: grid.layer_height_m' 'domain.vdb has changed'
+  touch survey.asc before.asc "$bin/talus-solve"
   change 's/^\[solve\]/# a remark\n\n[solve]/'
   runs
+  sed -i '6s/ 0$/ 0.5/; 6s/^0 /0.5 /; 7s/^[^ ]*/1/' survey.asc
+  runs postprocess
+  expect_words "postprocess: survey.asc has changed"
+  sed -i '7s/^[^ ]*/99/' before.asc
+  runs preprocess solve postprocess
+  expect_words "preprocess: before.asc has changed"
   rm out/run.h5
   runs solve postprocess
+  expect_words 'solve: there is no run.h5'
+  rm out/maps/deposit_thickness.tif
+  runs postprocess
+  expect_words 'postprocess: there is no maps/deposit_thickness.tif'
+  change 's/^title = .*/title = "Another"/'
+  runs preprocess solve postprocess
+  expect_words 'preprocess: [scene] has changed'
+}
+
+# The stages by themselves go by the same rule.
+test_the_stages_do_nothing_where_they_are_up_to_date_if_asked() {
+  scene
+  expect_exit 0 preprocess --if-outdated
+  expect_words 'preprocess: there is no domain.vdb'
+  expect_exit 0 solve --if-outdated
+  expect_exit 0 postprocess --if-outdated
+  local stage
+  for stage in preprocess solve postprocess; do
+    expect_exit 0 $stage --if-outdated
+    expect_words "$stage: " ' is up to date'
+    expect_stdout_paths
+  done
+  arguments=()
+  runs
+  expect_exit 0 solve --set solve.end_time_s=2 --if-outdated
+  expect_words 'solve: [solve] has changed: end_time_s'
+}
+
+# What GDAL reads beside a file that a recipe names is an input as well.
+test_files_beside_an_input_count() {
+  need_tool gdalbuildvrt
+  scene
+  gdal_translate -q -of GTiff -a_srs EPSG:32611 before.asc west.tif
+  gdalbuildvrt -q mosaic.vrt west.tif
+  change 's|^before_dem.*|before_dem = "mosaic.vrt"|'
+  expect_exit 0 preprocess
+  local name
+  for name in mosaic.vrt west.tif after.asc; do
+    grep -qF "# input: $TALUS_SCRATCH/$name  sha256 $(sha256sum $name | cut -d' ' -f1)" out/preprocess.used.toml ||
+      fail "$name is not noted"
+  done
+  expect_exit 0 preprocess --if-outdated
+  expect_words 'is up to date'
+  gdal_translate -q -of GTiff -a_srs EPSG:32611 -a_nodata 1 before.asc west.tif
+  expect_exit 0 preprocess --if-outdated
+  expect_words 'preprocess: west.tif has changed'
+  gdalsrsinfo -o wkt EPSG:32611 >after.prj
+  expect_exit 0 preprocess --if-outdated
+  expect_words 'preprocess: after.prj is new'
+}
+
+test_the_plan_is_of_a_domain_that_is_up_to_date() {
+  scene
+  expect_exit 0 run --plan
+  expect_words 'preprocess: there is no domain.vdb'
+  sed '/^preprocess: /,/^material points/d' stderr >first
+  [[ -f out/domain.vdb && ! -e out/run.h5 ]] || fail "$(ls out)"
+  expect_exit 0 run --plan
+  expect_words 'preprocess: domain.vdb is up to date'
+  expect_exit 0 solve --plan
+  grep -q 'steps' stderr || fail "no plan: $(<stderr)"
+}
+
+test_all_stages_run_in_one_process() {
+  need_tool strace
+  scene
+  expect_exit 0 strace -f -o trace -e trace=execve "$bin/talus" run recipe.toml --out out --on cpu
+  [[ $(grep -c 'execve(' trace) -eq 1 ]] || fail "processes: $(grep 'execve(' trace)"
 }
 
 test_set_values_count_like_the_recipes_and_are_checked_before_anything_runs() {
@@ -74,7 +143,7 @@ test_set_values_count_like_the_recipes_and_are_checked_before_anything_runs() {
   expect_words '--set preprocess.grid.spacing_m=-1: [preprocess.grid] spacing_m = -1 (out of range)'
 }
 
-# What the stages made by themselves, or make, counts as well: the checksums in the results tell.
+# What the stages made by themselves, or make, counts as well: their used recipes tell.
 test_results_of_the_stages_themselves_count() {
   scene
   expect_exit 0 preprocess
@@ -84,11 +153,16 @@ test_results_of_the_stages_themselves_count() {
   # A domain of another recipe, made behind the command's back.
   expect_exit 0 preprocess --set preprocess.grid.layer_height_m=1
   runs preprocess solve postprocess
-  expect_words 'preprocess: domain.vdb: another recipe made it: the checksum of its [preprocess] is '
+  expect_words 'preprocess: [preprocess] has changed: grid.layer_height_m'
   # Nor is a run of another recipe taken, whatever its time.
   expect_exit 0 solve --set solve.end_time_s=2
   runs solve postprocess
-  expect_words 'solve: run.h5: another recipe made it: the checksum of its [solve] is '
+  expect_words 'solve: [solve] has changed: end_time_s'
+  # Nor is a file from elsewhere, which carries another id.
+  expect_exit 0 "$bin/talus-solve" recipe.toml --out other --on cpu --set 'solve.domain="out/domain.vdb"'
+  cp other/run.h5 out/run.h5
+  runs solve postprocess
+  expect_words 'solve: run.h5 is not the one noted: its id is '
 }
 
 test_a_stale_domain_without_its_data_is_refused_with_the_reason() {
@@ -96,10 +170,10 @@ test_a_stale_domain_without_its_data_is_refused_with_the_reason() {
   expect_exit 0 run
   rm before.asc
   runs
-  expect_words "warning: domain.vdb is of this very recipe; whether its inputs are still the same cannot be told"
+  expect_words "warning: domain.vdb: recipe unchanged; inputs are missing and could not be checked: before.asc"
   change 's/layer_height_m = 2.0/layer_height_m = 1.0/'
   expect_exit 3 run
-  expect_words 'preprocess: [preprocess] or [scene] has changed' 'before.asc: '
+  expect_words 'preprocess: [preprocess] has changed: ' 'before.asc: '
   [[ -f out/run.h5 && -f out/score.json ]] || fail "the results of before are gone"
 }
 
@@ -131,19 +205,20 @@ test_a_failing_stage_ends_the_command_with_its_exit_code() {
 
 test_two_commands_in_one_folder_are_refused() {
   scene
-  mkdir -p out/.inputs
-  exec {held}>out/.inputs/lock
+  mkdir -p out
+  exec {held}>out/.talus.lock
+  echo 'talus run (process 1 on here, since today)' >&"$held"
   flock "$held"
   expect_exit 3 run
-  expect_words 'another talus run, or make -C pipelines, is at work there'
+  expect_words 'out: in use by talus run (process 1 on here, since today)'
   exec {held}>&-
 }
 
-test_make_and_talus_share_their_notes() {
+test_make_and_talus_go_by_one_rule() {
   need_tool make
   scene
   mkdir -p pipelines/bowl
-  cp "$TALUS_SOURCE"/pipelines/{Makefile,run-scene,stages.mk} pipelines/
+  cp "$TALUS_SOURCE"/pipelines/Makefile pipelines/
   mv recipe.toml before.asc after.asc survey.asc pipelines/bowl/
   expect_exit 0 make -C pipelines bowl BIN="$bin" OUT=out ON=cpu
   expect_exit 0 "$bin/talus" run pipelines/bowl/recipe.toml --out out/bowl --on cpu
@@ -151,7 +226,7 @@ test_make_and_talus_share_their_notes() {
   sed -i 's/end_time_s = 3.0/end_time_s = 2.0/' pipelines/bowl/recipe.toml
   expect_exit 0 "$bin/talus" run pipelines/bowl/recipe.toml --out out/bowl --on cpu
   expect_exit 0 make -C pipelines bowl BIN="$bin" OUT=out ON=cpu
-  ! grep -q 'talus-solve' stdout || fail "make ran what talus had made: $(<stdout)"
+  [[ $(grep -c 'is up to date$' stderr) -eq 3 ]] || fail "make ran what talus had made: $(<stderr)"
 }
 
 test_check_lists_the_faults_of_all_tables_and_writes_nothing() {

@@ -33,11 +33,24 @@ test_stages_include_common_and_never_one_another() {
   done | refuse "a stage includes another (they meet only in files)"
 }
 
-test_talus_includes_common_and_no_stage() {
+test_talus_includes_of_each_stage_its_stage_hpp_alone() {
   cd "$TALUS_SOURCE"
   some_includes talus
+  local stage
+  for stage in preprocess solver postprocess; do
+    includes talus | grep -qF ": $stage/stage.hpp" || fail "talus/ does not include $stage/stage.hpp"
+  done
   includes talus | { grep -E ': (preprocess|solver|postprocess|data_samples|tests)/' || true; } |
-    refuse "talus/ includes a stage (it runs their programs)"
+    { grep -vE ': (preprocess|solver|postprocess)/stage\.hpp$' || true; } |
+    refuse "talus/ includes more of a stage than its stage.hpp"
+}
+
+test_programs_of_the_stages_are_one_call() {
+  cd "$TALUS_SOURCE"
+  local stage
+  for stage in preprocess solver postprocess; do
+    [[ $(wc -l <$stage/main.cpp) -lt 20 ]] || fail "$stage/main.cpp holds more than its call of run_stage()"
+  done
 }
 
 test_common_knows_no_stage() {

@@ -7,6 +7,8 @@
 #include <future>
 #include <utility>
 
+#include "common/stage/context.hpp"
+
 namespace talus::solver {
 
 /// Work beside the run, one piece at a time.
@@ -15,7 +17,10 @@ class SideWork {
   /// The method starts `work` once the piece before is done; it throws what that threw.
   void start(std::function<void()> work) {
     settle();
-    running_ = std::async(std::launch::async, std::move(work));
+    running_ = std::async(std::launch::async, [work = std::move(work), &here = context()] {
+      const BindContext bind(here);
+      work();
+    });
   }
   /// The method waits until nothing is left to do; it throws what the last piece threw.
   void settle() {

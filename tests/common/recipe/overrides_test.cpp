@@ -16,11 +16,8 @@ using test::fault_of;
 using test::SampleOptions;
 
 struct Overrides : testing::Test {
-  ~Overrides() override { recipe::set_overrides({}); }
-
-  recipe::Recipe recipe(std::vector<std::string> set) {
-    recipe::set_overrides(std::move(set));
-    return recipe::Recipe(scratch.write("r.toml", text));
+  recipe::Recipe recipe(const std::vector<std::string>& set) {
+    return recipe::Recipe(scratch.write("r.toml", text), set);
   }
   SampleOptions read(std::vector<std::string> set) { return recipe(std::move(set)).read<SampleOptions>("solve"); }
   std::string faults(std::vector<std::string> set) {
@@ -119,6 +116,14 @@ TEST_F(Overrides, that_lead_nowhere_are_refused_all_at_once) {
             "solve.release[0]");
   EXPECT_NE(faults({"solve.times_s=[1, 2"}).find("--set solve.times_s=[1, 2 (the value is not TOML: "),
             std::string::npos);
+}
+
+TEST_F(Overrides, belong_to_their_recipe_alone) {
+  const recipe::Recipe changed = recipe({"solve.steps=8"}), plain = recipe({});
+  EXPECT_EQ(changed.overrides(), std::vector<std::string>{"solve.steps=8"});
+  EXPECT_EQ(changed.with({"solve.verbose=true"}).overrides(), changed.overrides());
+  EXPECT_TRUE(plain.overrides().empty());
+  EXPECT_EQ(plain.read<SampleOptions>("solve").steps, 7);
 }
 
 /// What is said on the command line makes what was computed with other values stale, as the recipe's file does.

@@ -12,11 +12,12 @@
 namespace talus {
 namespace {
 
-struct ShownPaths : testing::Test {
-  ~ShownPaths() override { forget_shown_paths(); }
+struct PathsShown : testing::Test {
+  ShownPaths paths;
+  BindShownPaths bind{paths};
 };
 
-TEST_F(ShownPaths, stand_for_whole_names_the_longest_first) {
+TEST_F(PathsShown, stand_for_whole_names_the_longest_first) {
   show_path_as("/maps/a/scene", "", "");
   show_path_as("/maps/a/scene/out", "results", "out");
   EXPECT_EQ(with_shown_paths("/maps/a/scene/before.tif: no such file"), "before.tif: no such file");
@@ -28,7 +29,7 @@ TEST_F(ShownPaths, stand_for_whole_names_the_longest_first) {
   EXPECT_EQ(with_shown_paths("in /maps/a/scene."), "in ..");
 }
 
-TEST_F(ShownPaths, leave_no_folder_of_the_machine_in_a_report) {
+TEST_F(PathsShown, leave_no_folder_of_the_machine_in_a_report) {
   show_path_as("/maps/a/scene", "/maps/a/scene", "");
   EXPECT_EQ(without_absolute_paths("/maps/a/scene/before.tif  sha256 12"), "before.tif  sha256 12");
   EXPECT_EQ(without_absolute_paths("\"/data/secret/dem.tif\""), "\"\u2026/dem.tif\"");
@@ -38,7 +39,7 @@ TEST_F(ShownPaths, leave_no_folder_of_the_machine_in_a_report) {
   EXPECT_EQ(without_absolute_paths("5 m/s, H/L 0.4, 1 / 2, https://a/b"), "5 m/s, H/L 0.4, 1 / 2, https://a/b");
 }
 
-TEST_F(ShownPaths, are_known_once_a_recipe_is_read) {
+TEST_F(PathsShown, are_known_once_a_recipe_is_read) {
   const test::Scratch scratch;
   std::filesystem::create_directories(scratch / "deep");
   const auto file = scratch.write("deep/r.toml", "[solve]\nterrain = \"../dem.tif\"\n");
@@ -49,6 +50,16 @@ TEST_F(ShownPaths, are_known_once_a_recipe_is_read) {
   std::filesystem::current_path(from);
   EXPECT_EQ(with_shown_paths(options.terrain.string() + ": no"), "dem.tif: no") << "from where the program was called";
   EXPECT_EQ(without_absolute_paths(options.terrain.string()), "../dem.tif") << "from the recipe";
+}
+
+TEST_F(PathsShown, are_those_of_the_object_that_is_bound) {
+  show_path_as("/maps/a", "here", "");
+  {
+    ShownPaths others;
+    const BindShownPaths inner(others);
+    EXPECT_EQ(with_shown_paths("/maps/a/x.tif"), "/maps/a/x.tif");
+  }
+  EXPECT_EQ(with_shown_paths("/maps/a/x.tif"), "here/x.tif");
 }
 
 }  // namespace

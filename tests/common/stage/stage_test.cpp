@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "common/stage/context.hpp"
+#include "common/stage/output_lock.hpp"
 #include "tests/common/sample_options.hpp"
 #include "tests/common/scratch.hpp"
 
@@ -31,7 +33,7 @@ struct RunStage : testing::Test {
               .depends =
                   [](const StageContext& context) {
                     const auto terrain = context.recipe.read<SampleOptions>("solve").terrain;
-                    return Dependencies{{context.out / "a.txt"}, {context.out / "survey/b.txt", terrain, terrain}};
+                    return Dependencies{{context.out / "a.txt"}, {context.out / "survey/b.txt", terrain}};
                   },
               .run = [](StageContext&) {}};
   std::string out, err;
@@ -125,35 +127,6 @@ TEST_F(RunStage, a_stage_without_kernels_takes_on_and_passes_it_over) {
   EXPECT_EQ(run({recipe(), "--restart"}), 2);
   EXPECT_EQ(run({"--help"}), 0);
   EXPECT_NE(out.find("This stage runs on the CPU whatever is asked"), std::string::npos) << out;
-}
-
-TEST_F(RunStage, depends_prints_rules_and_writes_nothing) {
-  const auto file = scratch.write("r.toml", "[solve]\nterrain = \"d m.tif\"\n").string();
-  const std::string terrain = (scratch / "d\\ m.tif").string();
-  EXPECT_EQ(run({file, "--depends", "--out", "some/../where"}), 0) << err;
-  EXPECT_EQ(out,
-            "where/a.txt: \\\n  where/survey/b.txt \\\n  " + terrain + "\n\nwhere/survey/b.txt:\n\n" + terrain + ":\n");
-  EXPECT_FALSE(std::filesystem::exists("where"));
-  EXPECT_EQ(run({file, "--depends", "--out", "."}), 0) << err;
-  EXPECT_TRUE(out.starts_with("a.txt: \\\n  survey/b.txt \\\n")) << out;
-  EXPECT_EQ(run({file, "--depends"}), 0) << err;
-  EXPECT_TRUE(out.starts_with((scratch / "out/a.txt").string() + ": \\\n")) << out;
-  EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
-}
-
-TEST_F(RunStage, used_is_the_same_for_recipes_that_say_the_same) {
-  const auto used = [&](const std::string& text) {
-    EXPECT_EQ(run({scratch.write("r.toml", text).string(), "--used"}), 0) << err;
-    EXPECT_FALSE(std::filesystem::exists(scratch / "out"));
-    return out;
-  };
-  const std::string five = used("[scene]\ntitle = \"T\"\n[solve]\nsteps = 5\n");
-  EXPECT_EQ(used("# of five\n[solve]\nsteps=5\n[scene]\ntitle = \"T\"\n[postprocess]\nrun = \"a.h5\"\n"), five);
-  EXPECT_NE(used("[scene]\ntitle = \"T\"\n[solve]\nsteps = 6\n"), five);
-  EXPECT_NE(used("[scene]\ntitle = \"U\"\n[solve]\nsteps = 5\n"), five);
-  const recipe::Recipe back(scratch.write("back.toml", five));
-  EXPECT_EQ(back.read<SampleOptions>("solve").steps, 5);
-  EXPECT_EQ(back.title(), "T");
 }
 
 TEST_F(RunStage, check_writes_nothing) {
@@ -251,6 +224,38 @@ TEST_F(RunStage, exit_codes_tell_the_kinds_of_faults_apart) {
                      version() + "\n");
   stage.run = [](StageContext&) { throw std::bad_alloc(); };
   EXPECT_EQ(run({recipe()}), 3);
+}
+
+/// A program that links a stage calls it without a command line.
+TEST_F(RunStage, is_called_from_a_program) {
+  stage.run = [&](StageContext& context) {
+    EXPECT_EQ(on, "gpu");
+    EXPECT_EQ(context.command_line, "talus-sample " + (scratch / "r.toml").string() + " --out " +
+                                        (scratch / "there").string() + " --set solve.steps=5 --on gpu");
+    EXPECT_EQ(context.recipe.read<SampleOptions>("solve").steps, 5);
+    log_warning("careful");
+    throw NumericalError(Fault{"step 3", "", ""});
+  };
+  std::vector<std::string> lines;
+  Context own([&](LogLevel, const std::string& text) { lines.push_back(text); });
+  const BindContext bind(own);
+  const StageOutcome outcome = call_stage(
+      stage, {.recipe = recipe(), .out = scratch / "there", .set = {"solve.steps=5"}, .flags = {{"--on", "gpu"}}});
+  EXPECT_EQ(outcome.code, ExitCode::numerical);
+  ASSERT_EQ(outcome.faults.size(), 1u);
+  EXPECT_EQ(outcome.faults.front().what, "step 3");
+  EXPECT_EQ(lines, std::vector<std::string>{"careful"});
+}
+
+TEST_F(RunStage, takes_no_second_lock_of_a_folder_that_its_context_has_locked) {
+  Context own;
+  const BindContext bind(own);
+  const OutputLock lock(scratch.folder(), "talus-first");
+  bool ran = false;
+  stage.run = [&](StageContext&) { ran = true; };
+  EXPECT_EQ(call_stage(stage, {.recipe = recipe(), .out = scratch.folder()}).code, ExitCode::success);
+  EXPECT_TRUE(ran);
+  EXPECT_TRUE(own.has_locked(scratch.folder())) << "the lock is still its holder's";
 }
 
 TEST_F(RunStage, prints_no_results_after_a_fault) {

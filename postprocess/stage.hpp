@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The stage talus-postprocess: run.h5 -> maps/ (GeoTIFF, NetCDF, outlines, QGIS project), map.png, report.html,
+// history.csv, score.json, score.txt; of an ensemble members.h5, counts*.h5 -> probability/ and what ensemble/ writes.
+#pragma once
+
+#include "common/stage/stage.hpp"
+
+namespace talus::postprocess {
+
+/// The stage with flags of its own: each call of the function makes another set of flags.
+Stage stage();
+
+}  // namespace talus::postprocess

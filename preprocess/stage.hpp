@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The stage talus-preprocess: elevation models -> domain.vdb, survey/, obstacles.vdb, members.h5, budget/.
+#pragma once
+
+#include "common/stage/stage.hpp"
+
+namespace talus::preprocess {
+
+/// The stage with flags of its own: each call of the function makes another set of flags.
+Stage stage();
+
+}  // namespace talus::preprocess

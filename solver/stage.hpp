@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The stage talus-solve: domain.vdb -> run.h5; members.h5 -> counts.h5; budget/ -> budget.h5.
+#pragma once
+
+#include "common/stage/stage.hpp"
+
+namespace talus::solver {
+
+/// The stage with flags of its own: each call of the function makes another set of flags.
+Stage stage();
+
+}  // namespace talus::solver
