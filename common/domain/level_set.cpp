@@ -5,9 +5,12 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <ios>
 #include <new>
 #include <stdexcept>
@@ -200,11 +203,39 @@ BodySurface read_surface(const Wanted& wanted) {
   return surface;
 }
 
+/// Bounds the memory of this process until the end of the scope: OpenVDB allocates what the sizes in a damaged file
+/// say.
+class MemoryBound {
+ public:
+  explicit MemoryBound(double more) {
+    ::getrlimit(RLIMIT_DATA, &before_);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers reserve far more than they use
+    double pages = 0;
+    std::ifstream statm("/proc/self/statm");
+    for (int field = 0; field < 6; ++field) statm >> pages;  // the sixth: data and stack
+    const double most = pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) + more;
+    const rlimit bound{static_cast<rlim_t>(most), before_.rlim_max};
+    if (statm && most < static_cast<double>(before_.rlim_cur)) ::setrlimit(RLIMIT_DATA, &bound);
+#else
+    static_cast<void>(more);
+#endif
+  }
+  MemoryBound(const MemoryBound&) = delete;
+  MemoryBound& operator=(const MemoryBound&) = delete;
+  ~MemoryBound() { ::setrlimit(RLIMIT_DATA, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
 }  // namespace
 
 BodySurface read_level_set(const fs::path& file, const std::string& name, const std::array<double, 3>& largest) {
   check_seal(file, "Run talus-preprocess again, or copy it again");
   const WhileReading reading(file, write_it);  // OpenVDB crashes on some damaged files
+  std::error_code unknown;
+  const auto size = fs::is_regular_file(file, unknown) ? fs::file_size(file, unknown) : 0;
+  const MemoryBound bound(0x1p31 + 64 * static_cast<double>(size));  // compressed contents unfold some ten times
   return read_surface({file, name, largest});
 }
 

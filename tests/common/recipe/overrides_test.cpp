@@ -89,8 +89,6 @@ TEST_F(Overrides, are_refused_with_the_words_of_the_recipe_and_their_own_place) 
   EXPECT_EQ(faults({"solve.release[1].thickness_m=-1"}),
             "--set solve.release[1].thickness_m=-1: [[solve.release]] thickness_m = -1 (out of range). It must be >= "
             "0");
-  EXPECT_EQ(faults({"solve.log=true"}),
-            "--set solve.log=true: [solve] log = true (verbose has taken its place). Write verbose = true");
 }
 
 TEST_F(Overrides, that_lead_nowhere_are_refused_all_at_once) {
