@@ -303,8 +303,10 @@ Verdict judge_freshness(const Stage& stage, const StageContext& context) {
                                            : reason_to_run(stage, context, expected, *record, missing);
   if (why.empty()) why = missing_results(&*record, expected, context.out, name);
   if (!why.empty()) return {why};
-  Verdict verdict;
-  for (const auto& [result, id] : record->results) verdict.results.push_back(context.out / result);
+  Verdict verdict{.results = expected.results};  // those of this call first
+  for (const auto& [result, id] : record->results)
+    if (std::find(verdict.results.begin(), verdict.results.end(), context.out / result) == verdict.results.end())
+      verdict.results.push_back(context.out / result);
   verdict.results.push_back(file);
   if (!missing.empty())
     verdict.remark = fmt::format("{}: recipe unchanged; inputs are missing and could not be checked: {}",

@@ -91,7 +91,7 @@ test_the_stages_do_nothing_where_they_are_up_to_date_if_asked() {
 test_files_beside_an_input_count() {
   need_tool gdalbuildvrt
   scene
-  gdal_translate -q -of GTiff -a_srs EPSG:32611 before.asc west.tif
+  gdal_translate -q -of GTiff before.asc west.tif
   gdalbuildvrt -q mosaic.vrt west.tif
   change 's|^before_dem.*|before_dem = "mosaic.vrt"|'
   expect_exit 0 preprocess
@@ -102,19 +102,18 @@ test_files_beside_an_input_count() {
   done
   expect_exit 0 preprocess --if-outdated
   expect_words 'is up to date'
-  gdal_translate -q -of GTiff -a_srs EPSG:32611 -a_nodata 1 before.asc west.tif
+  gdal_translate -q -of GTiff -co COMPRESS=LZW before.asc west.tif
   expect_exit 0 preprocess --if-outdated
   expect_words 'preprocess: west.tif has changed'
-  gdalsrsinfo -o wkt EPSG:32611 >after.prj
+  touch mosaic.prj
   expect_exit 0 preprocess --if-outdated
-  expect_words 'preprocess: after.prj is new'
+  expect_words 'preprocess: mosaic.prj is new'
 }
 
 test_the_plan_is_of_a_domain_that_is_up_to_date() {
   scene
   expect_exit 0 run --plan
   expect_words 'preprocess: there is no domain.vdb'
-  sed '/^preprocess: /,/^material points/d' stderr >first
   [[ -f out/domain.vdb && ! -e out/run.h5 ]] || fail "$(ls out)"
   expect_exit 0 run --plan
   expect_words 'preprocess: domain.vdb is up to date'
