@@ -114,10 +114,10 @@ Taken take(Solver& solver, int steps) {
   const auto first = solver.clock().step;
   while (taken.steps < steps) {
     const BatchReport batch = solver.advance();
-    if (batch.clock.halt == failed)
-      throw NumericalError(
-          {fmt::format("point {} of the block lost its state in step {}", batch.clock.failed_point, batch.clock.step),
-           "the steps timed are not those of a body that holds together", ""});
+    if (batch.clock.alarms.halt == failed)
+      throw NumericalError({fmt::format("point {} of the block lost its state in step {}",
+                                        batch.clock.alarms.failed_point, batch.clock.step),
+                            "the steps timed are not those of a body that holds together", ""});
     taken.newton += batch.stats.newton;
     taken.linear += batch.stats.linear;
     taken.steps = static_cast<int>(batch.clock.step - first);

@@ -65,7 +65,7 @@ struct HeldSlab {
   /// The flow of what is within 4 m of the slab's middle; profile(height along the normal) [m/s].
   Flow flow(const Solver& solver, const Scene& s, const std::function<double(double)>& profile) const {
     const ParticleState points = solver.state().points;
-    const auto x = positions(s.map, s.grid, solver.ground(), points);
+    const auto x = positions(s, points);
     const double cosine = std::cos(slope * in_radians), sine = std::sin(slope * in_radians), layer = upright / layers;
     const double middle = centre(solver, s).x;
     double sum = 0, volume = 0, top = 0, highest = 0, squares = 0, count = 0;

@@ -48,9 +48,8 @@ class SamplePeaks : public InEachPlace {
   /// Each cell against the fall from the highest point at the start to the ground in it. Less than 20 m below that, a
   /// column's share of points beside it counts for more than its own ground.
   static void expect_below_fall(const Scene& scene, const std::vector<double>& speed) {
-    const TerrainTables ground = make_terrain_tables(scene.grid);
     double top = -1e300;
-    for (const auto& place : positions(scene.map, scene.grid, ground, scene.points)) top = std::max(top, place[2]);
+    for (const auto& place : positions(scene, scene.points)) top = std::max(top, place[2]);
     for (std::size_t c = 0; c < speed.size(); ++c) {
       const double drop = top - scene.grid.terrain[c];
       if (!(drop > 20)) continue;

@@ -132,7 +132,7 @@ void SampleRun::run_to(double time) {
 
 std::vector<PointSeen> SampleRun::points() const {
   const ParticleState s = solver_->state().points;
-  const auto places = positions(scene_.map, scene_.grid, solver_->ground(), s);
+  const auto places = positions(scene_, s);
   const TerrainTables& ground = solver_->ground();
   std::vector<PointSeen> seen;
   for (std::size_t p = 0; p < s.size(); ++p) {
