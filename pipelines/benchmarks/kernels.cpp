@@ -62,6 +62,7 @@ Scene block(double points, const SolveOptions& options) {
   shape.quadratic = options.shape == ShapeKind::quadratic;
   shape.lowest_weighed = options.integrator == Integrator::explicit_ ? 0.1 : 0.01;  // as make_scene
   shape.terrain.assign(static_cast<std::size_t>(shape.columns) * static_cast<std::size_t>(shape.rows), 0.0);
+  scene.terrain = make_terrain_tables(shape);
   scene.map = {shape.columns, shape.rows, 0, 0, 1, ""};
   ParticleState& s = scene.points;
   place_seeds(margin, wide, high, s);
