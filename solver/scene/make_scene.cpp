@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/scene/make_scene.hpp"
+#include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/scene/make_inflow.hpp"
@@ -200,6 +201,7 @@ Scene finish_scene(const Domain& domain, const SolveOptions& options, Scene scen
   if (!faults.empty()) throw RecipeError(std::move(faults));
   scene.bed = make_bed(domain, options);
   scene.contacts = make_contact_points(domain.grid, scene.grid, scene.terrain, make_obstacles(options.obstacles));
+  log_detail(fmt::format("scene: {} points placed", scene.points.size()));
   return scene;
 }
 

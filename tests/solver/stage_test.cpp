@@ -49,6 +49,17 @@ TEST_F(SolveInProcess, stops_where_its_context_is_interrupted_and_goes_on_in_ano
   EXPECT_TRUE(fs::exists(scratch / "run.h5"));
 }
 
+TEST_F(SolveInProcess, builds_its_scene_once) {
+  int built = 0;
+  Context counting([&](LogLevel, const std::string& text) { built += text.starts_with("scene: ") ? 1 : 0; });
+  counting.verbosity = Verbosity::verbose;
+  const BindContext bind(counting);
+  EXPECT_EQ(solve({}).code, ExitCode::success);
+  EXPECT_EQ(built, 1);
+  EXPECT_EQ(solve({{"--plan", ""}}).code, ExitCode::success);
+  EXPECT_EQ(built, 2);
+}
+
 TEST_F(SolveInProcess, flags_of_one_call_are_not_those_of_the_next) {
   Context quiet([](LogLevel, const std::string&) {});
   const BindContext bind(quiet);
