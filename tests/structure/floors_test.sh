@@ -16,8 +16,8 @@ floors() {
       ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
-        linear/preconditioner linear/direct integrator 'explicit column_implicit implicit' options scene run/recorders \
-        run ensemble budget .
+        linear/preconditioner linear/direct integrator 'explicit column_implicit implicit' options scene plan \
+        run/recorders run ensemble budget .
       ;;
     postprocess)
       printf '%s\n' options survey fields hazard score budget writers maps 'picture three_d' report \
