@@ -25,3 +25,9 @@ html_show_search_summary = False  # it would be fetched, which a browser refuses
 html_permalinks_icon = "#"
 pygments_style = "tango"
 html_theme_options = {"navigation_with_keys": True}
+
+# Pages of a repository draw mermaid; the site shows its text, which Pygments has no lexer for.
+from pygments.lexers.special import TextLexer  # noqa: E402
+from sphinx.highlighting import lexers  # noqa: E402
+
+lexers["mermaid"] = TextLexer()
