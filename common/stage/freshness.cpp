@@ -56,13 +56,6 @@ std::string checksum_of(const fs::path& file) {
   return fs::is_regular_file(file, unknown) ? sha256(file) : "";
 }
 
-/// A comment of one line.
-std::string fact_line(const char* name, std::string value) {
-  std::replace_if(
-      value.begin(), value.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return fmt::format("# {}: {}\n", name, value);
-}
-
 /// The part of a fact behind a mark, and the part before it.
 std::optional<std::pair<std::string, std::string>> parted(const std::string& fact, std::string_view mark) {
   const auto at = fact.rfind(mark);
@@ -254,6 +247,12 @@ Ingredients ingredients_of(const Stage& stage, const StageContext& context) {
       made.inputs.emplace_back(file, checksum_of(file));
   }
   return made;
+}
+
+std::string fact_line(const std::string& name, std::string value) {
+  std::replace_if(
+      value.begin(), value.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return fmt::format("# {}: {}\n", name, value);
 }
 
 std::string lines_of(const Ingredients& ingredients) {

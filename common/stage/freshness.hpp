@@ -24,6 +24,9 @@ struct Ingredients {
 /// The ingredients of a call as they are now. Throws what the stage throws where the recipe or an input is wrong.
 Ingredients ingredients_of(const Stage& stage, const StageContext& context);
 
+/// The line of a used recipe for a fact, "# name: value"; a value with line breaks stays in its comment.
+std::string fact_line(const std::string& name, std::string value);
+
 /// The lines of a used recipe that say them.
 std::string lines_of(const Ingredients& ingredients);
 

@@ -10,13 +10,6 @@
 namespace talus {
 namespace {
 
-/// One comment line; a value with line breaks must not slip out of its comment.
-std::string comment(const std::string& name, std::string value) {
-  std::replace_if(
-      value.begin(), value.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return fmt::format("# {}: {}\n", name, value);
-}
-
 std::string checksum(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path) ? "sha256 " + sha256(path) : "not a plain file, no checksum";
 }
@@ -32,20 +25,20 @@ std::string used_recipe(const StageContext& context, const Stage& stage, const s
                         const std::vector<std::filesystem::path>& inputs,
                         const std::vector<std::pair<std::string, std::string>>& facts) {
   std::string text = "# What was used, defaults filled in. This file is itself a recipe.\n";
-  text += comment("program", stage.name + " " + version());
-  text += comment("command", context.command_line);
-  text += comment("recipe", context.recipe.file().string() + "  " + checksum(context.recipe.file()));
-  for (const std::string& value : context.recipe.overrides()) text += comment("set", value);
+  text += fact_line("program", stage.name + " " + version());
+  text += fact_line("command", context.command_line);
+  text += fact_line("recipe", context.recipe.file().string() + "  " + checksum(context.recipe.file()));
+  for (const std::string& value : context.recipe.overrides()) text += fact_line("set", value);
   text += lines_of(context.made_of);
   for (const auto& input : inputs) {
     const auto noted = [&](const auto& one) { return one.first == input; };
     const auto& known = context.made_of.inputs;
     if (!input.empty() && std::none_of(known.begin(), known.end(), noted))
-      text += comment("input", input.string() + "  " + checksum(input));
+      text += fact_line("input", input.string() + "  " + checksum(input));
   }
   const auto tells_hardware = [](const auto& fact) { return fact.first == "hardware"; };
-  if (std::none_of(facts.begin(), facts.end(), tells_hardware)) text += comment("hardware", hardware());
-  for (const auto& [name, value] : facts) text += comment(name, value);
+  if (std::none_of(facts.begin(), facts.end(), tells_hardware)) text += fact_line("hardware", hardware());
+  for (const auto& [name, value] : facts) text += fact_line(name, value);
   return text + "\n" + own_recipe(context.recipe, options_toml);
 }
 

@@ -221,15 +221,6 @@ void make_runs(const StageContext& context, const BudgetFlags& flags, const Budg
                      "interrupted", fmt::format("Go on with --restart; {} holds them", paths.unfinished().string())});
 }
 
-/// This function says by their times that run and budget have been found to be of the domain and the recipe at hand,
-/// which may have been written anew, the same: talus run and make go by times.
-void mark_as_of_now(const StageContext& context) {
-  const auto now = fs::file_time_type::clock::now();
-  std::error_code ignored;
-  for (const fs::path& file : {RunPaths(context.out).run, BudgetPaths{context.out}.budget()})
-    fs::last_write_time(file, now, ignored);
-}
-
 }  // namespace
 
 void refuse_budget(const StageContext& context, const SolveOptions& options, const RunFlags& flags) {
@@ -278,7 +269,7 @@ void run_budget(StageContext& context, const BudgetFlags& flags, const BudgetOpt
   context.results.push_back(paths.budget());
   if (finished_of(paths.budget(), budget)) {
     log_info(fmt::format("{}: it holds this very budget already", paths.budget().string()));
-    return mark_as_of_now(context);
+    return;
   }
   take_up_budget(paths.unfinished(), flags, budget);
   make_runs(context, flags, scene, options, budget);
@@ -286,7 +277,6 @@ void run_budget(StageContext& context, const BudgetFlags& flags, const BudgetOpt
   say_unmet(context, scene, budget);
   write_budget(paths.budget(), budget);
   remove_for_good(paths.unfinished());
-  mark_as_of_now(context);
   log_info(fmt::format("budget: {} runs done, {} failed, {} left out, in {:.1f} s; talus-postprocess compares them",
                        budget.count(BudgetState::done), budget.count(BudgetState::failed),
                        budget.count(BudgetState::left_out),
