@@ -61,7 +61,6 @@ struct HeldColumns {
 /// One thread: one column. It measures the mass that lies on the bed.
 template <class Real, class Nodes>
 struct MeasureLying {
-  static constexpr bool with_other_runs = runs_with_others<Nodes>();
   GridView<Real> grid;
   const int* active;
   const Clock* clock;
@@ -81,7 +80,6 @@ struct MeasureLying {
 /// whole. It touches no velocity along the bed: what pulls gives no friction.
 template <class Real, class Nodes>
 struct HoldColumns {
-  static constexpr bool with_other_runs = runs_with_others<Nodes>();
   GridView<Real> grid;
   const int* active;
   Clock* clock;

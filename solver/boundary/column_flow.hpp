@@ -209,7 +209,6 @@ TALUS_HD Slip<Number> column_slip(const LyingMatter<Number>& matter, const Colum
 /// rise after a step under `gravity` [m/s2].
 template <class Real, class Nodes>
 struct MeasureColumns {
-  static constexpr bool with_other_runs = runs_with_others<Nodes>();
   using Number = typename Nodes::Number;
   GridView<Real> grid;
   const int* active;
@@ -240,7 +239,6 @@ struct MeasureColumns {
 /// begins, for the masses that are known.
 template <class Real, class Nodes>
 struct MeasureCoefficients {
-  static constexpr bool with_other_runs = runs_with_others<Nodes>();
   using Number = typename Nodes::Number;
   GridView<Real> grid;
   const int* active;

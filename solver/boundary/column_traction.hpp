@@ -25,7 +25,6 @@ TALUS_HD Number share_left_by_traction(Number speed, Number drag, Number cohesio
 /// and add(n, change of velocity) of type Number.
 template <class Real, class Nodes>
 struct SlowColumns {
-  static constexpr bool with_other_runs = runs_with_others<Nodes>();
   using Number = typename Nodes::Number;
   GridView<Real> grid;
   const int* active;

@@ -21,7 +21,6 @@ inline constexpr int contact_sweeps = 4;
 /// The nodes of an explicit step: mass and velocity together.
 template <class Real>
 struct PackedNodes {
-  static constexpr bool with_other_runs = true;  ///< of kernels that have such nodes
   using Number = Real;
   Vec4<Real>* nodes;
   Vec4<Real>* changes;  ///< of the velocity in the step; null where nothing reads them
@@ -44,7 +43,6 @@ struct PackedNodes {
 /// The nodes as an explicit step finds them: mass and momentum together.
 template <class Real>
 struct PackedMomenta {
-  static constexpr bool with_other_runs = true;  ///< of kernels that have such nodes
   using Number = Real;
   const Vec4<Real>* nodes;
   /// The mass of node n [kg].

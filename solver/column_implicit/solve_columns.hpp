@@ -17,7 +17,6 @@ namespace talus {
 /// With `counts` the losses (T24) are counted.
 template <class Real, bool counts = false>
 struct SolveColumns {
-  static constexpr bool with_other_runs = !counts;
   ColumnBoundary<Real> boundary;
   Vec4<Real>* nodes;           ///< in: mass and momentum; out: mass and velocity
   Vec4<Real>* forces;          ///< in: force, and in w the spring to the node above [N/m]; out: change of velocity

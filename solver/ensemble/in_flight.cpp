@@ -10,7 +10,6 @@
 
 #include "common/stage/machine.hpp"
 #include "solver/parallel/algorithms.hpp"
-#include "solver/parallel/together.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -50,7 +49,6 @@ std::vector<AnyDevice> devices_for(int count, On on) {
   std::vector<AnyDevice> devices;
   const int gpus = on == On::gpu ? GpuDevice::count() : 1;
   for (int k = 0; k < count; ++k) devices.push_back(make_device(on, k % gpus));
-  share_starts(devices);
   return devices;
 }
 

@@ -19,7 +19,6 @@ enum class NodeContent {
 template <class Real, NodeContent content, bool counts = false>
 struct UpdateColumns {
   static_assert(!counts || content == NodeContent::force);
-  static constexpr bool with_other_runs = !counts;
   ColumnBoundary<Real> boundary;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;  ///< in: internal force; out: velocity change of the step (FLIP)

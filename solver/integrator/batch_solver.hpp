@@ -40,9 +40,8 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   /// The constructor takes whether waves across the layers bound the step; see PointSolver for the rest.
   BatchSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state,
               bool bound_by_layers)
-      : Base(device, scene, settings, state, needs(settings),
-             drift_between_sorts<Device>(settings.deterministic, has_company(device))),
-        recording_(device, Base::starts_with_others()),
+      : Base(device, scene, settings, state, needs(settings), drift_between_sorts<Device>(settings.deterministic)),
+        recording_(device),
         bound_by_layers_(bound_by_layers),
         columns_(device, surroundings_.bed(), settings, static_cast<double>(materials_.list[0].density), scene.grid) {}
 
@@ -55,13 +54,15 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     loads_now_ = loads_.upload(clock.time, clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     clock_.lend();
-    recording_.repeat(
-        steps_ahead(clock), [&] { step(); }, [&] { clock_.pass_in(); }, [&] { close(); });
+    clock_.pass_in();
+    recording_.repeat(steps_ahead(clock), [&] { step(); });
+    for_each(device_, 1, CloseBatch{clock_.data()});
+    clock_.pass_out();
     BatchReport report;
     clock = clock_.read();
     int halt = clock.alarms.halt;
-    this->measured_ = halt == at_event && recording_.has_company();
-    if (halt == at_event && !recording_.has_company()) look_back(clock_.data());
+    this->measured_ = false;
+    if (halt == at_event) look_back(clock_.data());
     if (halt == wants_sort) expected_ = clock.sorting.steps_since;
     // A sort comes before an event of the same time (Clock::halt_where_due), whose records see who has left.
     if (halt == wants_sort || (halt == at_event && clock.outflow.count > 0)) {
@@ -213,16 +214,6 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   int steps_between_sorts() const {
     if constexpr (Device::is_gpu) return steps_between_sorts_on_gpu<Shape>(points_.count());
     return cpu_steps_between_sorts;
-  }
-
-  /// The method ends a batch: it halts where something is due. With other runs it starts what an event asks for at
-  /// once, whether or not this is one: that saves a start of its own.
-  void close() {
-    for_each(device_, 1, CloseBatch{clock_.data()});
-    clock_.pass_out();
-    if (!recording_.has_company()) return;
-    look_back(clock_.data());
-    this->start_measures();
   }
 
   /// The method records the maps of speed and pressure where the clock has halted at an event, or at once where it is

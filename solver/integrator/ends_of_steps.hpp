@@ -13,7 +13,6 @@ namespace talus::solver {
 /// One thread: one node. It clears the node; the first one also opens the step.
 template <class Real>
 struct BeginStep {
-  static constexpr bool with_other_runs = true;
   Clock* clock;
   Vec4<Real>* nodes;
   Vec4<Real>* forces;  ///< null when forces are folded into the momentum
@@ -38,7 +37,6 @@ struct BeginStep {
 /// One thread. It halts the clock where something is due after the last step of a batch. Motion is then summed up for
 /// the maps where no step has done so.
 struct CloseBatch {
-  static constexpr bool with_other_runs = true;
   Clock* clock;
   TALUS_HD void operator()(int) const {
     Clock now = *clock;

@@ -23,7 +23,6 @@ namespace talus::solver {
 /// column of one node.
 template <class Real, class Shape>
 struct ScatterMotion {
-  static constexpr bool with_other_runs = true;
   using Number = Real;
   static constexpr int width = Shape::width, columns_each = width * width, deep = 1, parts = 4;
   GridView<Real> grid;
@@ -76,7 +75,6 @@ struct ScatterMotion {
 /// One thread: one column. Its mean speed and pressure go into the maps; its sums are zero again afterwards.
 template <class Real>
 struct RecordMotion {
-  static constexpr bool with_other_runs = true;
   GridView<Real> grid;
   const int* active;
   ColumnDensity<Real> density;

@@ -29,7 +29,6 @@ inline constexpr int packing_bins = 1024, packing_bins_to_one = 100;
 /// One thread: one point. Its initial volume goes to the cell of its nearest node [parts of a cell].
 template <class Real>
 struct ScatterParts {
-  static constexpr bool with_other_runs = true;
   GridView<Real> grid;
   ParticleView<Real> points;
   CellParts* parts;
@@ -51,7 +50,6 @@ TALUS_HD double room_along(int from_edge) { return from_edge == 0 ? 0.5 : 1.0; }
 /// is kept. Cells that the ground of a Cartesian grid cuts count as whole ones.
 template <class Real>
 struct BinPacking {
-  static constexpr bool with_other_runs = true;
   GridView<Real> grid;
   const int* active;
   const CellParts* parts;

@@ -41,7 +41,7 @@ class PointSolver : public Solver {
         shaking_(device, scene.shaking),
         maps_(device, state.maps, settings.map_threshold),
         measures_(device, scene.grid),
-        measuring_(device, starts_with_others()),
+        measuring_(device),
         motion_(device) {
     points_.upload(state.points);
   }
@@ -146,13 +146,6 @@ class PointSolver : public Solver {
   static void note_rate(Clock& clock, double rate) {
     atomic_max_positive(&clock.control.rate_bits, static_cast<float>(rate));
     clock.alarms.halt = clock.alarms.request = running;
-  }
-
-  /// Whether what repeats may be started with that of other runs: it does not change with time, may do a few steps more
-  /// than it was asked for, and has no kernels (of contact points, of the energy budget) that are started alone.
-  bool starts_with_others() const {
-    return !settings_.deterministic && settings_.walls.empty() && settings_.loads.empty() &&
-           !settings_.materials.densities_differ && !settings_.energy_budget && !surroundings_.contact().on();
   }
 
   /// The clock that a run goes on with from a state.

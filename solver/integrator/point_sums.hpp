@@ -30,7 +30,6 @@ struct MapWeights {
 /// One thread: one point. Sums of its energies (kinetic, potential, elastic), volume, momentum and motion.
 template <class Real, class Shape>
 struct MeasureEnergies {
-  static constexpr bool with_other_runs = true;
   static constexpr int rows = 9;
   GridView<Real> grid;
   ParticleView<Real> points;

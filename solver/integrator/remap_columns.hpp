@@ -11,7 +11,6 @@ namespace talus {
 /// has no friction, no columns and no maps: bed and walls only prevent penetration.
 template <class Real>
 struct RemapColumns {
-  static constexpr bool with_other_runs = true;
   ColumnBoundary<Real> boundary;
   Vec4<Real>* nodes;
 

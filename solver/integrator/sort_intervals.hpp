@@ -23,12 +23,11 @@ int steps_between_sorts_on_gpu(int points) {
 /// The steps between sorts on a CPU: in places of memory that lie apart, steps become slower.
 inline constexpr int cpu_steps_between_sorts = 32;
 /// The way that points may go before they are sorted: a sort takes as long as a dozen steps of a small scene, and more
-/// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one. Other
-/// runs on the GPU (`with_others`) go on while one sorts, but pay for its empty nodes.
+/// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one.
 template <class Device>
-Drift drift_between_sorts(bool deterministic, bool with_others) {
+Drift drift_between_sorts(bool deterministic) {
   if (!Device::is_gpu || deterministic) return {};
-  return with_others ? Drift{.columns = 4, .layers = 2} : Drift{.columns = 6, .layers = 3};
+  return {.columns = 6, .layers = 3};
 }
 
 }  // namespace talus::solver

@@ -102,10 +102,8 @@ struct EachIndexDensely : EachIndex<Kernel> {
   static constexpr int most_threads = 128, least_blocks = blocks;
 };
 
-/// Whether that many threads, with those of other runs where they are started as one, keep the GPU busy.
-inline bool is_busy_with(const GpuDevice& device, int count) {
-  return count >= points_that_keep_a_gpu_busy || gpu_kept(device) != nullptr;
-}
+/// Whether that many threads keep the GPU busy.
+inline bool is_busy_with(int count) { return count >= points_that_keep_a_gpu_busy; }
 }  // namespace detail
 
 /// On a GPU the kernel has one thread for each index, and as many blocks as its member `dense` asks for where there are
@@ -114,7 +112,7 @@ template <class Kernel>
 void for_each(const GpuDevice& device, int count, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<GpuDevice> time(device, kernel, count);
-  const bool busy = detail::is_busy_with(device, count);
+  const bool busy = detail::is_busy_with(count);
   const int threads = detail::threads_for(busy), blocks = (count + threads - 1) / threads;
   if constexpr (requires { Kernel::dense; }) {
     if (Kernel::dense > 0 && busy) {

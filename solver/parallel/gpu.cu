@@ -20,13 +20,6 @@ namespace {
 
 __global__ void probe() {}
 
-/// One thread: one word.
-struct ClearWord {
-  static constexpr bool with_other_runs = true;
-  std::uint32_t* words;
-  TALUS_HD void operator()(int i) const { words[i] = 0; }
-};
-
 /// This function lets the GPU's memory pool keep what is freed for the next allocation of this process, whichever
 /// stream asks: cudaMalloc and cudaFree wait for all streams.
 void keep_memory(int gpu) {
@@ -50,7 +43,6 @@ void check_cuda(cudaError_t code, const char* what) {
 GpuState::GpuState(int gpu) : index(gpu) {
   check_cuda(cudaSetDevice(index), "cudaSetDevice");
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "stream");
-  check_cuda(cudaEventCreateWithFlags(&ready, cudaEventDisableTiming), "event");
   keep_memory(index);
   cudaFuncAttributes attributes;  // code made for older devices does not wait
   starts_early = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
@@ -70,7 +62,6 @@ GpuState::~GpuState() {
   for (cudaEvent_t event : free_marks) (void)cudaEventDestroy(event);
   if (locked.memory) (void)cudaFreeHost(locked.memory);
   for (const auto& [bytes, room] : host_rooms) (void)cudaFreeHost(room);
-  (void)cudaEventDestroy(ready);
   (void)cudaStreamDestroy(stream);
 }
 
@@ -138,8 +129,7 @@ void free(const GpuDevice& device, void* memory) noexcept {
 
 void upload(const GpuDevice& device, void* to, const void* host, std::size_t bytes) {
   GpuState& state = device.state();
-  if (state.recording || state.kept)
-    throw std::logic_error("an upload within a recording would be repeated with what it was then");
+  if (state.recording) throw std::logic_error("an upload within a recording would be repeated with what it was then");
   state.select();
   LockedMemory& locked = state.locked;
   if (!locked.memory || bytes > LockedMemory::few) {
@@ -155,7 +145,6 @@ void upload(const GpuDevice& device, void* to, const void* host, std::size_t byt
 
 void download(const GpuDevice& device, void* host, const void* from, std::size_t bytes) {
   GpuState& state = device.state();
-  if (state.kept) throw std::logic_error("a download within a list would come before what it waits for");
   state.select();
   const bool by_locked = state.locked.memory && bytes <= LockedMemory::few;
   void* const to = by_locked ? state.locked.memory : host;
@@ -165,9 +154,6 @@ void download(const GpuDevice& device, void* host, const void* from, std::size_t
 }
 
 void fill_zero(const GpuDevice& device, void* memory, std::size_t bytes) {
-  if (device.state().kept)  // memory of a device begins and ends with whole words
-    return for_each(device, static_cast<int>(bytes / sizeof(std::uint32_t)),
-                    ClearWord{static_cast<std::uint32_t*>(memory)});
   device.state().select();
   check_cuda(cudaMemsetAsync(memory, 0, bytes, device.stream()), "fill");
 }

@@ -12,10 +12,8 @@
 #include <vector>
 
 #include "solver/parallel/buffer.hpp"
-#include "solver/parallel/launch_list.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/parallel/sums.hpp"
-#include "solver/parallel/together.hpp"
 
 namespace talus {
 
@@ -87,10 +85,7 @@ struct GpuState {
   int index;
   cudaStream_t stream = nullptr;
   bool starts_early = false, recording = false;
-  bool is_idle = true;                 ///< nothing was started on the stream since the host waited for it
-  LaunchList* kept = nullptr;          ///< takes what would be started
-  std::shared_ptr<Together> together;  ///< the runs beside which it starts what it repeats; or null
-  cudaEvent_t ready = nullptr;         ///< for them: what was started on the stream is done
+  bool is_idle = true;  ///< nothing was started on the stream since the host waited for it
   LockedMemory locked;
   std::multimap<std::size_t, void*> host_rooms;  ///< page-locked memory that nobody has, by its size [bytes]
   std::vector<cudaEvent_t> free_marks;           ///< events that nobody waits for

@@ -24,7 +24,6 @@ void give_back_host(const GpuDevice& device, void* memory, std::size_t bytes) no
 
 /// One thread: one word.
 struct CopyWord {
-  static constexpr bool with_other_runs = true;
   const std::uint32_t* from;
   std::uint32_t* to;
   TALUS_HD void operator()(int i) const { to[i] = from[i]; }

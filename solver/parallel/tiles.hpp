@@ -364,7 +364,7 @@ void scatter_points(const GpuDevice& device, int count, const PointGroups& group
   constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <=
                         65536;  // two blocks of 32 points a warp, and room beside them
   if constexpr (fits) {
-    if (detail::is_busy_with(device, count)) return detail::start_tiles<32>(device, count, kernel);
+    if (detail::is_busy_with(count)) return detail::start_tiles<32>(device, count, kernel);
   }
   detail::start_tiles<16>(device, count, kernel);
 }

@@ -22,7 +22,6 @@ enum class Gather {
 /// velocity. `budget`: adds up what is lost (T24), for the clock.
 template <class Real, class Shape, Gather part, bool budget, class Laws = MaterialLaws>
 struct GridToParticle {
-  static constexpr bool with_other_runs = !budget;
   static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  ///< see run_dense
   GridView<Real> grid;
   ParticleView<Real> points;

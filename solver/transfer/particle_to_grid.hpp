@@ -25,7 +25,6 @@ inline constexpr bool forces_apart(Scatter what) { return what == Scatter::force
 /// whose w takes the spring to the node above (T6b).
 template <class Real, class Shape, Scatter what, class Laws = MaterialLaws>
 struct ParticleToGrid {
-  static constexpr bool with_other_runs = true;
   using Number = Real;
   static constexpr int width = Shape::width, columns_each = width * width, deep = width,
                        parts = what == Scatter::springs ? 8

@@ -104,7 +104,7 @@ class ConjugateGradient {
   NodeVector<Device> r_{device_}, z_{device_}, p_{device_}, ap_{device_};
   Buffer<CgState, Device> state_{device_};
   SumSpace<Device> sums_{device_};
-  Recording<Device> loop_{device_, false, plain_iterations};
+  Recording<Device> loop_{device_, plain_iterations};
   int last_ = 0;
 };
 
