@@ -4,12 +4,10 @@
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
 
-#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <new>
-#include <system_error>
 
 #include "common/domain/check_domain.hpp"
 #include "common/domain/domain.hpp"
@@ -40,11 +38,7 @@ struct Contents {
 };
 
 /// Through a stream that throws at the end of the file: OpenVDB itself would go on with whatever it has.
-Contents read_all(const fs::path& file) {
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream && errno == ENOMEM) throw std::bad_alloc();
-  if (!stream) refuse(file, "cannot be read", std::generic_category().message(errno), "Check the path");
+Contents read_all(const fs::path& file, std::ifstream& stream) {
   stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
   try {
     openvdb::io::Stream archive(stream, false);
@@ -239,10 +233,10 @@ Domain assemble(const fs::path& file, const Contents& contents) {
 
 Domain read_domain(const fs::path& file) {
   if (!fs::exists(file)) refuse(file, "no such file", "", "Run talus-preprocess first, with the same --out");
-  require_seal(file, again);
+  std::ifstream stream = open_sealed_stream(file, again);
   openvdb::initialize();
   const WhileReading reading(file, again);
-  const Contents contents = read_all(file);
+  const Contents contents = read_all(file, stream);
   check_kind(file, *contents.meta);
   try {
     return assemble(file, contents);

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,6 +24,8 @@ class Sha256 {
   static constexpr std::size_t read_at_once = std::size_t{1} << 20;  ///< bytes of a file read in one block
 
   Sha256();
+  Sha256(const Sha256& other);
+  Sha256& operator=(const Sha256&) = delete;
   void add(std::span<const std::uint8_t> bytes);
   /// Digest of all bytes added, in hex. Call it once, after the last add().
   std::string digest();
@@ -37,6 +40,14 @@ class Sha256 {
 /// This function adds the seal to a file that is written and closed. It throws the DataError of a file that cannot be
 /// written, under the name `shown`.
 void seal_file(const std::filesystem::path& file, const std::filesystem::path& shown);
+
+/// A sealed file, open at its begin. Notes its checksum in the context, for checksum_as_read(). Throws as
+/// require_seal().
+std::ifstream open_sealed_stream(const std::filesystem::path& file, const std::string& mend);
+
+/// SHA-256 in hex of a sealed file as this context has read it last; of the file as it is where it was not read.
+/// Empty where it is no plain file.
+std::string checksum_as_read(const std::filesystem::path& file);
 
 /// Whether a file is sealed. The function throws DataError with `mend` where the seal is that of other bytes, or where
 /// the file cannot be read. A file that is cut short has lost its seal and counts as one that never had any.

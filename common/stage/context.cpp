@@ -52,6 +52,17 @@ void Context::log(LogLevel level, const std::string& text) {
   sink(level, shown);
 }
 
+void Context::note_checksum(const std::filesystem::path& file, std::string digest) {
+  const std::lock_guard lock(mutex_);
+  checksums_[file] = std::move(digest);
+}
+
+std::string Context::checksum_of(const std::filesystem::path& file) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = checksums_.find(file);
+  return found == checksums_.end() ? "" : found->second;
+}
+
 void Context::add_lock(const std::filesystem::path& file, bool held) {
   const std::lock_guard lock(mutex_);
   locks_.push_back({file, held});

@@ -18,6 +18,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -62,6 +63,10 @@ class Context {
   /// Names of paths in the log and in the report.
   ShownPaths& paths() { return *paths_; }
 
+  /// SHA-256 of files as they were read; empty where a file was not.
+  void note_checksum(const std::filesystem::path& file, std::string digest);
+  std::string checksum_of(const std::filesystem::path& file) const;
+
   /// Output folders that this context has locked. `held`: the file system knows locks.
   void add_lock(const std::filesystem::path& file, bool held);
   void remove_lock(const std::filesystem::path& file);
@@ -83,6 +88,7 @@ class Context {
   ShownPaths own_paths_;
   ShownPaths* paths_ = &own_paths_;
   std::vector<Lock> locks_;
+  std::map<std::filesystem::path, std::string> checksums_;
   std::atomic<bool> interrupted_{false}, heeds_signals_{false};
 };
 

@@ -9,8 +9,9 @@
 namespace talus {
 
 struct Dependencies {
-  std::vector<std::filesystem::path> results;  ///< files that the stage writes; the last one written stands first
-  std::vector<std::filesystem::path> inputs;   ///< files that it reads besides the recipe
+  std::vector<std::filesystem::path> results;      ///< files that the stage writes; the last one written stands first
+  std::vector<std::filesystem::path> inputs;       ///< files that it reads besides the recipe
+  std::vector<std::filesystem::path> sealed = {};  ///< of these, sealed ones: it notes the checksum of what it reads
 };
 
 }  // namespace talus

@@ -12,6 +12,8 @@
 #include <string_view>
 
 #include "common/recipe/used.hpp"
+#include "common/stage/checksum.hpp"
+#include "common/stage/context.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
 
@@ -241,10 +243,13 @@ Ingredients ingredients_of(const Stage& stage, const StageContext& context) {
   Ingredients made;
   for (const auto& [name, text] : tables_in(fresh_recipe(stage, context)))
     made.tables.emplace_back(name, sha256_of_text(text));
-  for (const fs::path& file : stage.depends(context).inputs) {
+  const Dependencies depends = stage.depends(context);
+  for (const fs::path& file : depends.inputs) {
     const auto known = [&](const auto& one) { return one.first == file; };
-    if (fs::exists(file) && std::none_of(made.inputs.begin(), made.inputs.end(), known))
-      made.inputs.emplace_back(file, checksum_of(file));
+    if (!fs::exists(file) || std::any_of(made.inputs.begin(), made.inputs.end(), known)) continue;
+    const bool is_sealed = std::find(depends.sealed.begin(), depends.sealed.end(), file) != depends.sealed.end();
+    made.inputs.emplace_back(file, is_sealed ? std::nullopt : std::optional(checksum_of(file)));
+    if (is_sealed) talus::context().note_checksum(file, "");  // not read yet
   }
   return made;
 }
@@ -255,13 +260,17 @@ std::string fact_line(const std::string& name, std::string value) {
   return fmt::format("# {}: {}\n", name, value);
 }
 
+std::string input_line(const std::string& name, const fs::path& file, const std::optional<std::string>& noted) {
+  const std::string checksum = noted ? *noted : checksum_as_read(file);
+  const std::string end = checksum.empty() ? std::string(no_checksum) : fmt::format("{}{}", checksum_mark, checksum);
+  return fact_line(name, file.string() + end);
+}
+
 std::string lines_of(const Ingredients& ingredients) {
   std::string text;
   for (const auto& [name, checksum] : ingredients.tables)
     text += fact_line("table", fmt::format("{}{}{}", name, checksum_mark, checksum));
-  for (const auto& [file, checksum] : ingredients.inputs)
-    text += fact_line("input", file.string() + (checksum.empty() ? std::string(no_checksum)
-                                                                 : fmt::format("{}{}", checksum_mark, checksum)));
+  for (const auto& [file, checksum] : ingredients.inputs) text += input_line("input", file, checksum);
   return text;
 }
 

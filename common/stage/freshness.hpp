@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,8 +18,8 @@ struct StageContext;
 struct Ingredients {
   /// Tables of the recipe, defaults filled in, each with the SHA-256 of its text.
   std::vector<std::pair<std::string, std::string>> tables = {};
-  /// Files with their SHA-256; empty where one is no plain file.
-  std::vector<std::pair<std::filesystem::path, std::string>> inputs = {};
+  /// Files with their SHA-256: empty where one is no plain file, none where the stage notes it as it reads the file.
+  std::vector<std::pair<std::filesystem::path, std::optional<std::string>>> inputs = {};
 };
 
 /// The ingredients of a call as they are now. Throws what the stage throws where the recipe or an input is wrong.
@@ -26,6 +27,10 @@ Ingredients ingredients_of(const Stage& stage, const StageContext& context);
 
 /// The line of a used recipe for a fact, "# name: value"; a value with line breaks stays in its comment.
 std::string fact_line(const std::string& name, std::string value);
+
+/// The line of a used recipe for a file; with the checksum as it was read where none is given.
+std::string input_line(const std::string& name, const std::filesystem::path& file,
+                       const std::optional<std::string>& checksum = {});
 
 /// The lines of a used recipe that say them.
 std::string lines_of(const Ingredients& ingredients);

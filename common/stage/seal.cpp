@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 
 #include "common/stage/checksum.hpp"
+#include "common/stage/context.hpp"
 #include "common/stage/input_file.hpp"
+#include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
 namespace talus {
@@ -42,8 +44,8 @@ std::optional<SealLine> seal_in(const std::string& end) {
   return text_of(seal) == end ? std::optional(seal) : std::nullopt;
 }
 
-/// The digest of the first bytes of a file; none where they cannot be read.
-std::optional<std::string> digest_of(std::istream& stream, std::uint64_t length) {
+/// The sum of the first bytes of a file; none where they cannot be read.
+std::optional<Sha256> sum_of(std::istream& stream, std::uint64_t length) {
   Sha256 sum;
   std::vector<std::uint8_t> part(std::min<std::uint64_t>(length, Sha256::read_at_once));
   while (length > 0) {
@@ -52,36 +54,19 @@ std::optional<std::string> digest_of(std::istream& stream, std::uint64_t length)
     sum.add(std::span(part).first(bytes));
     length -= bytes;
   }
-  return sum.digest();
+  return sum;
 }
 
 std::string system_reason() {
   return errno != 0 ? std::generic_category().message(errno) : "the system gave no reason";
 }
 
-}  // namespace
-
-void seal_file(const fs::path& file, const fs::path& shown) {
-  errno = 0;
-  std::error_code error;
-  SealLine seal{"", fs::file_size(file, error)};
-  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
-  const auto digest = error ? std::nullopt : digest_of(stream, seal.length);
-  if (!digest) throw DataError(write_fault(shown, error ? error.message() : system_reason()));
-  seal.digest = *digest;
-  stream.clear();
-  stream.seekp(0, std::ios::end);
-  stream << text_of(seal);
-  stream.close();
-  if (!stream) throw DataError(write_fault(shown, system_reason()));
-}
-
-bool check_seal(const fs::path& file, const std::string& mend) {
+/// Whether an open file is sealed; see check_seal(). Notes the checksum of the whole file where it is.
+bool is_sealed(const fs::path& file, std::ifstream& stream, const std::string& mend) {
   std::error_code error;
   const std::uint64_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
   if (error || size < seal_size) return false;
   errno = 0;
-  std::ifstream stream(file, std::ios::binary);
   std::string end(seal_size, '\0');
   stream.seekg(static_cast<std::streamoff>(size - seal_size));
   if (!stream.read(end.data(), seal_size)) refuse_file(file, "cannot be read", system_reason(), mend);
@@ -92,24 +77,62 @@ bool check_seal(const fs::path& file, const std::string& mend) {
                 fmt::format("it holds {} bytes, its last line speaks of {}", size - seal_size, seal->length), mend);
   }
   stream.seekg(0);
-  const auto digest = digest_of(stream, seal->length);
-  if (!digest) refuse_file(file, "cannot be read", system_reason(), mend);
-  if (*digest != seal->digest) {
+  auto sum = sum_of(stream, seal->length);
+  if (!sum) refuse_file(file, "cannot be read", system_reason(), mend);
+  Sha256 whole = *sum;
+  whole.add({reinterpret_cast<const std::uint8_t*>(end.data()), end.size()});
+  if (const std::string digest = sum->digest(); digest != seal->digest) {
     refuse_file(file, "is damaged",
                 fmt::format("bytes have changed since it was written: its SHA-256 is {}..., its last line says {}...",
-                            digest->substr(0, 12), seal->digest.substr(0, 12)),
+                            digest.substr(0, 12), seal->digest.substr(0, 12)),
                 mend);
   }
+  context().note_checksum(file, whole.digest());
+  stream.seekg(0);
   return true;
 }
 
-void require_seal(const fs::path& file, const std::string& mend) {
+}  // namespace
+
+void seal_file(const fs::path& file, const fs::path& shown) {
+  errno = 0;
+  std::error_code error;
+  SealLine seal{"", fs::file_size(file, error)};
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  auto sum = error ? std::nullopt : sum_of(stream, seal.length);
+  if (!sum) throw DataError(write_fault(shown, error ? error.message() : system_reason()));
+  seal.digest = sum->digest();
+  stream.clear();
+  stream.seekp(0, std::ios::end);
+  stream << text_of(seal);
+  stream.close();
+  if (!stream) throw DataError(write_fault(shown, system_reason()));
+}
+
+bool check_seal(const fs::path& file, const std::string& mend) {
+  if (!fs::is_regular_file(file)) return false;
+  std::ifstream stream(file, std::ios::binary);
+  return is_sealed(file, stream, mend);
+}
+
+std::ifstream open_sealed_stream(const fs::path& file, const std::string& mend) {
   if (!fs::exists(file)) refuse_file(file, "no such file", "", mend);
   require_plain(file);
   if (fs::is_directory(file)) refuse_file(file, "cannot be read", "it is a folder", "Check the path");
-  if (!check_seal(file, mend))
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream && errno == ENOMEM) throw std::bad_alloc();
+  if (!is_sealed(file, stream, mend))
     refuse_file(file, "is damaged", "its checksum is missing: another program wrote or changed it, or its end is lost",
                 mend);
+  return stream;
+}
+
+void require_seal(const fs::path& file, const std::string& mend) { open_sealed_stream(file, mend); }
+
+std::string checksum_as_read(const fs::path& file) {
+  const std::string noted = context().checksum_of(file);
+  return !noted.empty() || !fs::is_regular_file(file) ? noted : sha256(file);
 }
 
 }  // namespace talus

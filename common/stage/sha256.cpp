@@ -29,6 +29,10 @@ Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
   require_success(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
 }
 
+Sha256::Sha256(const Sha256& other) : Sha256() {
+  require_success(EVP_MD_CTX_copy_ex(context_.get(), other.context_.get()));
+}
+
 void Sha256::add(std::span<const std::uint8_t> bytes) {
   require_success(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
 }

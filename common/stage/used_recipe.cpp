@@ -8,14 +8,6 @@
 #include "common/stage/stage.hpp"
 
 namespace talus {
-namespace {
-
-std::string checksum(const std::filesystem::path& path) {
-  return std::filesystem::is_regular_file(path) ? "sha256 " + sha256(path) : "not a plain file, no checksum";
-}
-
-}  // namespace
-
 std::string own_recipe(const recipe::Recipe& recipe, const std::string& options_toml) {
   return fmt::format("[scene]\nname = {}\ntitle = {}\n\n{}", recipe::toml_text(recipe.scene_name()),
                      recipe::toml_text(recipe.title()), options_toml);
@@ -27,14 +19,13 @@ std::string used_recipe(const StageContext& context, const Stage& stage, const s
   std::string text = "# What was used, defaults filled in. This file is itself a recipe.\n";
   text += fact_line("program", stage.name + " " + version());
   text += fact_line("command", context.command_line);
-  text += fact_line("recipe", context.recipe.file().string() + "  " + checksum(context.recipe.file()));
+  text += input_line("recipe", context.recipe.file());
   for (const std::string& value : context.recipe.overrides()) text += fact_line("set", value);
   text += lines_of(context.made_of);
   for (const auto& input : inputs) {
     const auto noted = [&](const auto& one) { return one.first == input; };
     const auto& known = context.made_of.inputs;
-    if (!input.empty() && std::none_of(known.begin(), known.end(), noted))
-      text += fact_line("input", input.string() + "  " + checksum(input));
+    if (!input.empty() && std::none_of(known.begin(), known.end(), noted)) text += input_line("input", input);
   }
   const auto tells_hardware = [](const auto& fact) { return fact.first == "hardware"; };
   if (std::none_of(facts.begin(), facts.end(), tells_hardware)) text += fact_line("hardware", hardware());

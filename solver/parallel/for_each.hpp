@@ -29,7 +29,7 @@ void for_each(const CpuDevice& device, int count, const Kernel& kernel) {
   const KernelTime<CpuDevice> time(device, kernel, count);
   detail::cpu_parallel(
       count, 256,
-      [](const void* k, int begin, int end) {
+      [](const void* k, int begin, int end) TALUS_FLATTEN {
         const Kernel local = *static_cast<const Kernel*>(k);
         for (int i = begin; i < end; ++i) local(i);
       },
@@ -64,7 +64,7 @@ void for_each_grouped(const CpuDevice& device, int count, const PointGroups& gro
     } body{&kernel, ranges.data()};
     detail::cpu_parallel(
         static_cast<int>(ranges.size()), 1,
-        [](const void* b, int begin, int end) {
+        [](const void* b, int begin, int end) TALUS_FLATTEN {
           const Body* data = static_cast<const Body*>(b);
           const Kernel local = *data->kernel;
           for (int r = begin; r < end; ++r) {

@@ -6,10 +6,12 @@
 #if defined(__CUDACC__)
 #define TALUS_HD __host__ __device__ __forceinline__
 #define TALUS_RARE __host__ __device__ __noinline__  // long and seldom run: out of the way of what is run always
+#define TALUS_FLATTEN
 #define TALUS_FOR_GPU 1  // this file is compiled for the GPU as well: instantiate templates for GpuDevice
 #else
 #define TALUS_HD inline
 #define TALUS_RARE inline
+#define TALUS_FLATTEN __attribute__((flatten))  // a loop over a kernel: what it calls is inlined, as on a GPU
 #define TALUS_FOR_GPU 0
 #endif
 
