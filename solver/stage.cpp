@@ -135,6 +135,7 @@ EnsembleFlags ensemble_flags(const SolveFlags& flags) {
 Dependencies depends(const StageContext& context, const SolveFlags& flags) {
   if (ensemble_of(context.recipe).on()) return depends_of_ensemble(context, ensemble_flags(flags));
   Dependencies depends{{RunPaths(context.out).run}, inputs_of(options_of(context.recipe, context.out), context.out)};
+  depends.sealed = {depends.inputs.front()};
   if (const BudgetOptions budget = budget_of(context.recipe, flags.budget); budget.make)
     add_depends_of_budget(context, budget, depends);
   return depends;

@@ -34,7 +34,7 @@ std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const 
 }
 
 std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptions& options) {
-  std::string fingerprint = sha256(domain) + "\n" + recipe::to_toml(options, "solve", false);
+  std::string fingerprint = checksum_as_read(domain) + "\n" + recipe::to_toml(options, "solve", false);
   for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
   for (const InflowOptions& inflow : options.inflows)
     if (!inflow.file.empty()) fingerprint += sha256(inflow.file) + "\n";
