@@ -16,10 +16,8 @@ constexpr GoneKey gone_keys[] = {
     {"solve.flip_fraction", "Give transfer_time_s, the time over which velocity finer than the grid decays"},
     {"solve.ground_contact", "Leave it out; mapping = \"terrain-following\" meets steep ground where it is"},
     {"solve.implicit.linear_solver=bicgstab", "Take linear_solver = \"pcg\""},
-    {"solve.implicit.operator",
-     "Leave it out; the product goes point by point, and preset = \"reference\" stores element matrices"},
-    {"solve.implicit.preconditioner",
-     "Leave it out; it is the 3 x 3 block of each node, and the diagonal with preset = \"reference\""},
+    {"solve.implicit.operator", "Leave it out; the product goes point by point"},
+    {"solve.implicit.preconditioner", "Leave it out; it is the 3 x 3 block of each node"},
     {"solve.implicit.tangent", "Leave it out; the tangent is symmetric, with the yield stress held"},
     {"solve.vdb_frames", "Leave it out; run.h5 holds the points (point_frames)"},
 };

@@ -29,7 +29,6 @@ struct NewtonControls {
 struct LinearControls {
   LinearSolver solver = LinearSolver::pcg;
   int iterations = 5000;   ///< of conjugate gradients, at most
-  bool reference = false;  ///< as in the reference paper: stored element matrices, preconditioned by the diagonal
 };
 
 /// How implicit steps are taken.

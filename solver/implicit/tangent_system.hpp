@@ -29,13 +29,13 @@ class TangentSystem {
         nodes_(nodes),
         contacts_(contacts),
         stresses_(parts, nodes.mass),
-        operator_(parts.device, parts.controls.linear.reference),
-        preconditioner_(parts.device, parts.controls.linear.reference) {}
+        operator_(parts.device),
+        preconditioner_(parts.device) {}
 
   /// The method takes particles that have moved or have been sorted: elements and neighbours anew, where anything goes
   /// by them.
   void group() {
-    if (parts_.controls.dynamic && !direct() && !parts_.controls.linear.reference && !parts_.controls.b_bar) return;
+    if (parts_.controls.dynamic && !direct() && !parts_.controls.b_bar) return;
     stresses_.group();
     if (direct()) {
       cholesky_.begin_step(stresses_.elements());
@@ -74,7 +74,6 @@ class TangentSystem {
   void list_memory(Add&& add) const {
     add("tangents", stresses_.tangent_bytes());
     add("elements", stresses_.elements().bytes());
-    add("element matrices", operator_.bytes());
     add("preconditioner", preconditioner_.bytes());
     add("Krylov vectors", cg_.bytes());
     add("factor and its matrix", cholesky_.bytes() + static_cast<std::size_t>(cholesky_.factor().factor_bytes()));

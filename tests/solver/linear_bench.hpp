@@ -249,9 +249,9 @@ struct LinearBench {
     mass.upload(m);
   }
 
-  /// K x point by point, by tangents in single precision where `single`, or by stored element matrices.
-  std::vector<Vec3<double>> product(bool stored = false, bool single = false) {
-    TangentOperator<Real, Device, Shape> op(device, stored);
+  /// K x point by point, by tangents in single precision where `single`.
+  std::vector<Vec3<double>> product(bool single = false) {
+    TangentOperator<Real, Device, Shape> op(device);
     op.begin_step(elements);
     PointTangents<Real> tangents_of_points = from();
     Buffer<float, Device> narrow(device);
@@ -279,12 +279,12 @@ struct LinearBench {
     return b;
   }
 
-  std::vector<Vec3<double>> by_gradients(bool diagonal = false, int* iterations = nullptr, double tolerance = 1e-12) {
+  std::vector<Vec3<double>> by_gradients(int* iterations = nullptr, double tolerance = 1e-12) {
     NodeVector<Device> x(device);
     const NodeVector<Device> b = right_side();
-    NodePreconditioner<Real, Device, Shape> preconditioner(device, diagonal);
+    NodePreconditioner<Real, Device, Shape> preconditioner(device);
     preconditioner.refresh(from(), grid.groups(), elements, held());
-    TangentOperator<Real, Device, Shape> op(device, false);
+    TangentOperator<Real, Device, Shape> op(device);
     op.begin_step(elements);
     op.refresh(from(), grid.groups());
     ConjugateGradient<Device> cg(device);

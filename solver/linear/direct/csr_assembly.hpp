@@ -7,7 +7,7 @@
 
 #include "solver/elements/held_nodes.hpp"
 #include "solver/linear/direct/csr_matrix.hpp"
-#include "solver/linear/operator/stored_elements.hpp"
+#include "solver/linear/direct/stored_elements.hpp"
 
 namespace talus::solver {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "solver/elements/held_nodes.hpp"
-#include "solver/linear/operator/stored_elements.hpp"
+#include "solver/linear/direct/stored_elements.hpp"
 
 namespace talus::solver {
 

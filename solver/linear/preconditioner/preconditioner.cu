@@ -68,10 +68,9 @@ struct ScatterBlocks : PointScatter<Real, Shape> {
   }
 };
 
-/// One thread: one node. Inverse of its block, or of the block's diagonal.
+/// One thread: one node. Inverse of its block, or of the diagonal of one that is not definite.
 struct InvertBlocks {
   HeldNodes held;
-  bool diagonal;
   Sym3<double>* blocks;
   TALUS_HD void operator()(int n) const {
     Sym3<double>& b = blocks[n];
@@ -79,15 +78,9 @@ struct InvertBlocks {
       b = {};
       return;
     }
-    if (diagonal) {
-      b = own_block(held, b, n);
-      b = {safe(b.xx), safe(b.yy), safe(b.zz), 0, 0, 0};
-      return;
-    }
     b = held_block(held, b, n);
     b = inverted(is_definite(b) ? b : diagonal_of(b));
   }
-  TALUS_HD static double safe(double d) { return d > 0 ? 1 / d : 0; }
 };
 
 /// One thread: one node. z = P inverse P r in a loop that may be over, with its share of r . z.
@@ -139,7 +132,7 @@ void NodePreconditioner<Real, Device, Shape>::refresh(const PointTangents<Real>&
   scatter_points(device_, from.points.count, groups, Blocks{{from.grid, from.points}, from.tangents, blocks_.data()});
   if (from.means.on()) add_mean_blocks(list, from.means, blocks_);
   if (from.springs.on()) add_spring_blocks(list, from.springs, blocks_);
-  for_each(device_, held.count, InvertBlocks{held, diagonal_, blocks_.data()});
+  for_each(device_, held.count, InvertBlocks{held, blocks_.data()});
 }
 
 template <class Real, class Device, class Shape>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// z = B^-1 r for conjugate gradients: B is the 3 x 3 block of each node (block Jacobi), or the diagonal.
+// z = B^-1 r for conjugate gradients: B is the 3 x 3 block of each node (block Jacobi).
 #pragma once
 
 #include "solver/elements/element_list.hpp"
@@ -16,8 +16,7 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class NodePreconditioner {
  public:
-  /// With `diagonal` B is the diagonal alone.
-  NodePreconditioner(const Device& device, bool diagonal) : device_(device), diagonal_(diagonal) {}
+  explicit NodePreconditioner(const Device& device) : device_(device) {}
 
   /// The method makes B from the points' tangents and what holds the nodes; `held` must stay until the next call.
   /// `list` are the elements, for what couples the points of one.
@@ -33,7 +32,6 @@ class NodePreconditioner {
 
  private:
   Device device_;
-  bool diagonal_;
   HeldNodes held_;
   Buffer<Sym3<double>, Device> blocks_{device_};  ///< inverses
   SumSpace<Device> sums_{device_};

@@ -37,7 +37,6 @@ class ElementTerms : public InEachPlace {
       const auto expected = bench.product();
       LinearBench<Real, Device, Shape> plain({kind_of<Shape>, Mapping::terrain_following, model});
       EXPECT_GT(difference(plain.product(), expected), 1e-3) << "the terms do nothing";
-      EXPECT_LT(difference(bench.product(true), expected), 1e-12);
     }
   }
 

@@ -39,17 +39,10 @@ TEST(ImplicitControls, are_those_of_the_recipe) {
   EXPECT_EQ(c.newton.linear_tolerance, 1e-5);
   EXPECT_EQ(c.linear.solver, LinearSolver::cholesky);
   EXPECT_EQ(c.linear.iterations, 77);
-  EXPECT_FALSE(c.linear.reference);
   EXPECT_EQ(c.apex, 0.2);
   EXPECT_TRUE(c.b_bar);
   EXPECT_EQ(c.filler, 1e-2);
   EXPECT_EQ(c.newton.give_up, interrupted) << "a step ends where a signal asks for the end";
-}
-
-TEST(ImplicitControls, have_the_forms_of_the_reference_paper_by_its_preset) {
-  SolveOptions o;
-  o.preset = Preset::reference;
-  EXPECT_TRUE(make_implicit_controls(with_preset(o)).linear.reference);
 }
 
 TEST(ImplicitControls, are_static_and_one_linear_solve_where_the_recipe_says_so) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dense element matrices (Bathe 1996, section 4.2): K x element by element, never assembled.
+// Dense element matrices (Bathe 1996, section 4.2), from which the matrix to factorise is assembled.
 #pragma once
 
 #include "solver/elements/element_sums.hpp"
@@ -41,10 +41,6 @@ class StoredElements {
 
   /// The method sums the points' tangents into the elements' matrices.
   void assemble(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from);
-
-  /// The method adds K x to y, both [nodes]. On the CPU it goes over the elements by colour, with the same sums on
-  /// every run; on the GPU one thread takes one row, with atomic sums.
-  void apply(const ElementList<Real, Device, Shape>& list, const NodeVector<Device>& x, NodeVector<Device>& y);
 
   /// The matrices as kernels see them, until the next assemble().
   Matrices view() { return {values_.data(), rows_}; }
