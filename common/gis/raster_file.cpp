@@ -152,7 +152,7 @@ Raster RasterFile::read(const CellWindow& w) const {
   raster.grid.rows = w.rows;
   require_room(w.columns, w.rows, sizeof(double), file().string(),
                "Crop it (gdal_translate -projwin), take larger cells (gdalwarp -tr), or give the working grid bounds "
-               "(west_m, south_m, east_m, north_m in [preprocess.grid])");
+               "(extent_m in [preprocess.grid])");
   raster.values.resize(raster.grid.count());
   if (raster.values.empty()) return raster;
   const std::size_t before = parts_->source.undeclared_nodata();

@@ -2,31 +2,107 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/recipe/gone_keys.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
 namespace talus::recipe {
 namespace {
 
-struct GoneKey {
-  std::string_view place;   ///< "table.key", or "table.key=word" of a choice
+struct GoneKeys {
+  std::string_view places;  ///< "table.key" or "table.key=word" of a choice; further keys of the table after blanks
   std::string_view advice;  ///< what to do instead, an imperative without a full stop
 };
 
-constexpr GoneKey gone_keys[] = {
-    {"postprocess.three_d.volumes", "Leave it out; 3d/run.pvd opens in ParaView"},
-    {"postprocess.three_d.voxel_m", "Leave it out; 3d/run.pvd opens in ParaView"},
+constexpr GoneKeys gone_keys[] = {
+    {"postprocess.animation", "Put \"mp4\" or \"gif\" into outputs of [postprocess]"},
+    {"postprocess.avaframe avaframe_format", "Put \"avaframe-tif\" or \"avaframe-asc\" into outputs of [postprocess]"},
+    {"postprocess.nodata_zero", "Convert the map where a tool needs that: gdalwarp -dstnodata 0 IN.tif OUT.tif"},
+    {"postprocess.report", "Name what is written in outputs: \"report\" and \"report-3d\" are among the default"},
+    {"postprocess.three_d",
+     "Name what is written in outputs of [postprocess]: \"surface\", \"terrain\", \"points\", \"report-3d\""},
+    {"postprocess.intensity.rule",
+     "Leave it out; own limits are reached by any of the quantities. guideline = \"swiss-debris-flow\" wants all"},
+    {"postprocess.intensity.thickness_speed_m2_s",
+     "Take guideline = \"swiss-flood\", which limits that product, or give thickness_m and speed_m_s"},
+    {"postprocess.survey.resample_seed", "Leave it out; the same surveys are drawn each time"},
+    {"preprocess.before_vertical_unit after_vertical_unit",
+     "Declare the unit in the file (gdal_edit.py -units foot FILE), or give vertical_unit for all models"},
+    {"preprocess.bed.friction_angle_deg peak_coefficient steady_coefficient characteristic_speed_m_s turbulence_m_s2 "
+     "bartelt_cohesion_Pa friction_coefficient minimum_shear_Pa stop_angle_deg steepest_angle_deg start_angle_deg "
+     "layer_length_m cohesion_Pa pore_pressure_ratio",
+     "Give [[preprocess.bed.raster]] with number and file"},
+    {"preprocess.bed.return_period_years", "Give the rows of the volume and return period at hand alone"},
+    {"preprocess.bed.roughness_m", "Leave it out; R is one number, 0.05 m, in all sets of com1DFA"},
+    {"preprocess.bed.zone.return_period_years smallest_volume_m3 largest_volume_m3",
+     "Give the rows of the volume and return period at hand alone"},
+    {"preprocess.coregistration.steepest_deg",
+     "Leave it out; ground steeper than 45 degrees is no part of the fit. Name more in changed"},
+    {"preprocess.coregistration.tilt", "Leave it out; a tilt within three times its error is left out"},
+    {"preprocess.deposit.bridge_cells longest_gap steepest_rest_deg sure_levels sure_cells",
+     "Draw the deposit: polygon in [preprocess.deposit]"},
+    {"preprocess.deposit.outside_share",
+     "Draw the deposit (polygon), or take accept = [\"change-outside-slide\"] in [postprocess]"},
+    {"preprocess.difference.before_sigma_m after_sigma_m", "Give sigma_m, the root of the sum of both models' squares"},
+    {"preprocess.difference.threshold", "Give confidence: 0.6827 for the error itself, and minimum_level_m"},
+    {"preprocess.erodible.volume_factor grow_m", "Change the thickness or the polygons of the layer"},
+    {"preprocess.grid.minimum_thickness_m", "Leave it out; fewer points_per_cell make thin columns cheap"},
+    {"preprocess.grid.west_m south_m east_m north_m", "Give extent_m = [west, south, east, north]"},
+    {"preprocess.obstacle.voxel_m",
+     "Leave it out; voxels are a quarter of the smaller of spacing_m and layer_height_m"},
+    {"preprocess.source.seed_x_m seed_y_m", "Give seed_m = [easting, northing]"},
+    {"preprocess.source.sliding_surface.depth_points_hold", "Name the column of depths \"depth\"; z is an elevation"},
+    {"preprocess.voids.fill largest_m2", "Give fill_m2, the largest area that is filled, such as 1e5"},
     {"solve.flip_fraction", "Give transfer_time_s, the time over which velocity finer than the grid decays"},
     {"solve.ground_contact", "Leave it out; mapping = \"terrain-following\" meets steep ground where it is"},
+    {"solve.kappa", "Leave it out; it is 0.3, and below 0.25 steps are unstable"},
+    {"solve.vdb_frames", "Leave it out; run.h5 holds the points (point_frames)"},
+    {"solve.base.drag_offset", "Leave it out; it is 4.13 in all sets of com1DFA"},
+    {"solve.base.hysteresis_power", "Leave it out; it is 1 (Edwards et al. 2017)"},
+    {"solve.base.karman_constant", "Leave it out; it is 0.43 in all sets of com1DFA"},
+    {"solve.base.roughness_m", "Leave it out; it is 0.05 m in all sets of com1DFA"},
+    {"solve.base.weakening_number", "Leave it out; it is 0.222 in all sets of com1DFA"},
+    {"solve.implicit.apex", "Leave it out; the tip is rounded over a tenth of the weight of a cell"},
+    {"solve.implicit.filler", "Leave it out; it is a thousandth of the stiffness of a full cell"},
+    {"solve.implicit.forcing", "Give linear_tolerance"},
+    {"solve.implicit.linear_iterations", "Leave it out; 5000 at most. linear_solver = \"cholesky\" takes none"},
     {"solve.implicit.linear_solver=bicgstab", "Take linear_solver = \"pcg\""},
+    {"solve.implicit.newton_iterations", "Leave it out; 30 at most, and preset = \"reference\" takes one"},
     {"solve.implicit.operator", "Leave it out; the product goes point by point"},
     {"solve.implicit.preconditioner", "Leave it out; it is the 3 x 3 block of each node"},
+    {"solve.implicit.step_cuts", "Leave it out; a step is halved 8 times at most"},
     {"solve.implicit.tangent", "Leave it out; the tangent is symmetric, with the yield stress held"},
-    {"solve.vdb_frames", "Leave it out; run.h5 holds the points (point_frames)"},
+    {"solve.load.from_s", "Give ramp_s; loads pull from the start"},
+    {"solve.material.fast_friction_rise", "Leave it out; it is 0.05 (Barker & Gray 2017)"},
+    {"solve.material.stiffness_check", "Run an error budget, which varies the modulus"},
+    {"solve.material.stiffness_strain", "Leave it out; accuracy of [solve] settles it"},
+    {"solve.material.volume_fraction_slope", "Leave it out; it is 0.2 (Forterre & Pouliquen 2008)"},
+    {"solve.part.fast_friction_rise", "Leave it out; it is 0.05 (Barker & Gray 2017)"},
+    {"solve.part.stiffness_check", "Run an error budget, which varies the modulus"},
+    {"solve.part.stiffness_strain", "Leave it out; accuracy of [solve] settles it"},
+    {"solve.part.volume_fraction_slope", "Leave it out; it is 0.2 (Forterre & Pouliquen 2008)"},
+    {"solve.stability.critical_share", "Leave it out; points that go half as far as the mean belong to the mass"},
+    {"solve.stability.largest_factor", "Leave it out; the search ends at 20"},
+    {"solve.wall.from_s", "Leave it out; walls stand from the start"},
 };
+
+/// The length of "table." in "table.key=word".
+std::size_t table_length(std::string_view place) { return place.substr(0, place.find('=')).rfind('.') + 1; }
+
+/// True if `place` is one of those of a row.
+bool holds(std::string_view places, std::string_view place) {
+  const std::size_t end = std::min(places.find(' '), places.size()), table = table_length(places.substr(0, end));
+  if (place.substr(0, table) != places.substr(0, table) || table_length(place) != table) return false;
+  const std::string key = fmt::format(" {} ", place.substr(table));
+  return fmt::format(" {} ", places.substr(table)).find(key) != std::string::npos;
+}
 
 }  // namespace
 
 std::string_view advice_on_gone(std::string_view place) {
-  for (const GoneKey& gone : gone_keys) {
-    if (gone.place == place) return gone.advice;
+  for (const GoneKeys& gone : gone_keys) {
+    if (holds(gone.places, place)) return gone.advice;
   }
   return {};
 }

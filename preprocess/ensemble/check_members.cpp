@@ -25,10 +25,7 @@ constexpr Barred barred[] = {
     {"ensemble", "it says how the members are drawn", leave_out},
     {"scene", "it names all of them", leave_out},
     {"preprocess.grid.spacing_m", one_map, "Run an ensemble for each spacing"},
-    {"preprocess.grid.west_m", one_map, leave_out},
-    {"preprocess.grid.south_m", one_map, leave_out},
-    {"preprocess.grid.east_m", one_map, leave_out},
-    {"preprocess.grid.north_m", one_map, leave_out},
+    {"preprocess.grid.extent_m", one_map, leave_out},
     {"preprocess.working_crs", one_map, leave_out},
     {"preprocess.laboratory", one_map, "Vary the boxes"},
     {"preprocess.accept", "what is accepted holds for all members", leave_out},
@@ -100,10 +97,6 @@ void check_keys(const MemberTable& table, const Options& base) {
     refuse_key(thickness_factor_key,
                fmt::format("the recipe has thickness_factor = {:g} for all members", base.thickness_factor),
                "Leave it out of [preprocess], and vary around it");
-  for (const BedZone& zone : base.bed.zones)
-    if (zone.smallest_volume || zone.largest_volume)
-      refuse_key(thickness_factor_key, "rows of [[preprocess.bed.zone]] hold by volume, and are laid before it acts",
-                 "Vary volume_factor of the releases, which gives each member a domain of its own");
 }
 
 std::vector<std::optional<Options>> options_of_members(const recipe::Recipe& recipe, const MemberTable& table) {

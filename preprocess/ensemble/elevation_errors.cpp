@@ -74,12 +74,10 @@ void ElevationErrors::take_survey(const Options& of_base, const SceneRasters& ba
   if (!errors.is_known())
     refuse_errors(table, "from_survey = true, but the error of the survey is not known",
                   "there is too little stable ground, or both models are the same there",
-                  "Give before_sigma_m and after_sigma_m in [preprocess.difference], or the numbers here: "
+                  "Give sigma_m in [preprocess.difference], or the numbers here: "
                   "terrain_deviation_m, thickness_deviation_m and range_m");
   thickness_ = errors.sigmas(base.before);
-  const double given = of_base.difference.given_sigma();
-  const double of_one = given > 0 ? of_base.difference.before_sigma / given : 1 / std::numbers::sqrt2;
-  for (const double sigma : thickness_) terrain_.push_back(of_one * sigma);
+  for (const double sigma : thickness_) terrain_.push_back(sigma / std::numbers::sqrt2);
   const Variogram& v = errors.variogram();
   const double cell = base.bed.grid.cell, of_survey = base.survey->grid.cell;
   add_part(base.bed.grid, v.nugget * left_in_a_cell({}, cell, of_survey), 0);

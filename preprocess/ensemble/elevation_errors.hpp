@@ -15,9 +15,9 @@ namespace talus::preprocess {
 
 /// Errors of the ground and of the released thickness, Gaussian, with a standard deviation at each cell and a spherical
 /// correlation, or a sum of them. As the survey stage finds them on stable ground (from_survey): the deviation of the
-/// difference by slope is that of the released thickness; the ground's is that over the root of two, or
-/// before_sigma_m where the recipe gives it; nugget and ranges are those of the variogram, each less what its mean over
-/// a cell of the working grid loses where that is wider than the survey's.
+/// difference by slope is that of the released thickness; the ground's is that over the root of two; nugget and ranges
+/// are those of the variogram, each less what its mean over a cell of the working grid loses where that is wider than
+/// the survey's.
 class ElevationErrors {
  public:
   /// `base` is the scene whose errors they are. Throws RecipeError where from_survey finds no survey, or one whose

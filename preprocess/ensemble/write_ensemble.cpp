@@ -142,7 +142,7 @@ void MemberDomains::check_grid(std::int64_t member, const Prepared& made) const 
                           "Fill the model, or bring it to the working CRS beforehand (gdalwarp)"});
   throw DataError(Fault{fmt::format("it lies on another grid: {} (the base: {})", words(own), words(base)),
                         "members are counted in the cells of one map",
-                        "Name the part to compute, so that all have it: west_m, south_m, east_m, north_m in "
+                        "Name the part to compute, so that all have it: extent_m in "
                         "[preprocess.grid]"});
 }
 

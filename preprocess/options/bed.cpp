@@ -4,30 +4,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "preprocess/options/fault.hpp"
 
 namespace talus::preprocess {
 
-void BedZone::describe(recipe::Visitor& v, const std::string& place, const std::optional<double>& chosen) {
+void BedZone::describe(recipe::Visitor& v, const std::string& place) {
   v.path("polygons", polygons, "vector file of the ground where the row holds, such as forest; none: everywhere");
   v.optional_number("from_m", from, recipe::any, "elevation of the bed from which on the row holds");
   v.optional_number("to_m", to, recipe::any, "elevation up to which it holds");
   v.needs(!from || !to || *from < *to,
           fault(fmt::format("{}: from_m = {:g} is not below to_m = {:g}", place, from.value_or(0), to.value_or(0)),
                 "no ground lies between", "Give the lower elevation first"));
-  v.optional_number("smallest_volume_m3", smallest_volume, recipe::not_negative,
-                    "released volume from which on the row holds");
-  v.optional_number("largest_volume_m3", largest_volume, recipe::positive, "released volume up to which it holds");
-  v.needs(!smallest_volume || !largest_volume || *smallest_volume < *largest_volume,
-          fault(fmt::format("{}: smallest_volume_m3 = {:g} is not below largest_volume_m3 = {:g}", place,
-                            smallest_volume.value_or(0), largest_volume.value_or(0)),
-                "no volume lies between", "Give the smaller volume first"));
-  v.optional_number("return_period_years", return_period_years, recipe::positive,
-                    "return period for which the row holds; none: for any");
-  v.needs(!return_period_years || chosen,
-          fault(fmt::format("{}: return_period_years = {:g}, but [preprocess.bed] names no return period", place,
-                            return_period_years.value_or(0)),
-                "it is not known whether the row holds", "Give [preprocess.bed] return_period_years"));
   v.optional_number("friction_coefficient", friction_coefficient, recipe::not_negative,
                     "mu there; [solve.base] friction_angle_deg becomes its arctangent");
   v.optional_number("added_coefficient", added_coefficient, recipe::any,
@@ -41,23 +30,27 @@ void BedZone::describe(recipe::Visitor& v, const std::string& place, const std::
                 "Give friction_coefficient, added_coefficient or turbulence_m_s2"));
 }
 
-bool BedZone::holds_for(double volume, const std::optional<double>& return_period) const {
-  return (!return_period_years || return_period_years == return_period) &&
-         (!smallest_volume || volume >= *smallest_volume) && (!largest_volume || volume < *largest_volume);
+void BedRaster::describe(recipe::Visitor& v, const std::string& place) {
+  v.one_of("number", number, {bed_numbers.begin(), bed_numbers.end()},
+           "the key of [solve.base] that it takes the place of");
+  v.path("file", file, "raster of it; no data: the number in [solve.base]");
+  v.needs(!file.empty(), fault(place + ": file is not given", "there is nothing to read", "Name a raster"));
 }
 
 void BedRasters::describe(recipe::Visitor& v) {
-  for (auto& [name, file] : files)
-    v.path(name, file, "raster that takes the place of [solve.base] " + name + "; no data: that number");
+  recipe::list(v, "raster", rasters, "a number of [solve.base] from place to place; may be repeated",
+               [&](BedRaster& one, std::size_t item) {
+                 one.describe(v, fmt::format("bed.raster {}", item + 1));
+                 const auto same = [&](const BedRaster& other) { return other.number == one.number; };
+                 v.needs(std::ranges::count_if(rasters, same) < 2,
+                         fault(fmt::format("bed.raster {}: number = \"{}\" is given twice", item + 1, one.name()),
+                               "one raster would hide the other", "Leave one out"));
+               });
   v.path("polygons", polygons,
          "vector file whose polygons have such numbers as attributes of the same names; laid over the rasters");
-  v.optional_number("return_period_years", return_period_years, recipe::positive,
-                    "return period whose rows of [[preprocess.bed.zone]] hold");
   recipe::list(v, "zone", zones,
                "a row of a table of Voellmy's numbers, laid over the rasters and the rows above; may be repeated",
-               [&](BedZone& zone, std::size_t item) {
-                 zone.describe(v, fmt::format("bed.zone {}", item + 1), return_period_years);
-               });
+               [&](BedZone& zone, std::size_t item) { zone.describe(v, fmt::format("bed.zone {}", item + 1)); });
 }
 
 }  // namespace talus::preprocess

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "common/domain/bed_numbers.hpp"
@@ -19,31 +18,33 @@ namespace talus::preprocess {
 /// row of the tables by which guidelines give them. What is not given sets no bound.
 struct BedZone {
   std::filesystem::path polygons{};
-  std::optional<double> from{}, to{};                         ///< elevations [m]
-  std::optional<double> smallest_volume{}, largest_volume{};  ///< of all that is released [m3]
-  std::optional<double> return_period_years{};                ///< of [preprocess.bed]
-  std::optional<double> friction_coefficient{};               ///< mu [-]
-  std::optional<double> added_coefficient{};                  ///< to the mu of the rows above [-]
-  std::optional<double> turbulence{};                         ///< xi [m/s2]
+  std::optional<double> from{}, to{};            ///< elevations [m]
+  std::optional<double> friction_coefficient{};  ///< mu [-]
+  std::optional<double> added_coefficient{};     ///< to the mu of the rows above [-]
+  std::optional<double> turbulence{};            ///< xi [m/s2]
 
-  /// The method declares the keys with defaults, help and what they need; messages call the entry `place`, and `chosen`
-  /// is the return period of the recipe.
-  void describe(recipe::Visitor& v, const std::string& place, const std::optional<double>& chosen);
-  /// Whether the row holds for a released volume [m3] and a return period.
-  bool holds_for(double volume, const std::optional<double>& return_period) const;
+  /// The method declares the keys with defaults, help and what they need; messages call the entry `place`.
+  void describe(recipe::Visitor& v, const std::string& place);
+};
+
+/// One [[preprocess.bed.raster]].
+struct BedRaster {
+  int number = 0;  ///< of bed_numbers
+  std::filesystem::path file{};
+
+  /// Key of the number in [solve.base].
+  std::string_view name() const { return bed_numbers.at(static_cast<std::size_t>(number)); }
+  /// Declares the keys with defaults, help and what they need; messages call the entry `place`.
+  void describe(recipe::Visitor& v, const std::string& place);
 };
 
 /// The keys of [preprocess.bed]: rasters under the names of the numbers in [solve.base] that they take the place of,
 /// polygons with the same numbers as attributes, and zones; each is laid over those before.
 struct BedRasters {
-  std::vector<std::pair<std::string, std::filesystem::path>> files;
+  std::vector<BedRaster> rasters;
   std::filesystem::path polygons;  ///< with the numbers as attributes
-  std::optional<double> return_period_years;
   std::vector<BedZone> zones;
 
-  BedRasters() {
-    for (const std::string_view key : bed_numbers) files.emplace_back(key, std::filesystem::path());
-  }
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

@@ -36,21 +36,6 @@ void need_one_way(recipe::Visitor& v, const Options& o) {
   refuse(base && !releases && !o.no_release, "base_dem is given without a release", "nothing would move");
 }
 
-/// This function declares what the heights of one model are in, where it differs from the others.
-void describe_unit(recipe::Visitor& v, const std::string& model, VerticalUnit& unit, bool model_is_there) {
-  recipe::choice(
-      v, model + "_vertical_unit", unit,
-      {{"same", VerticalUnit::same},
-       {"declared", VerticalUnit::declared},
-       {"metre", VerticalUnit::metre},
-       {"foot", VerticalUnit::foot},
-       {"us-survey-foot", VerticalUnit::us_survey_foot}},
-      "what the heights of " + model + "_dem are in, where it differs from the others; same = as vertical_unit says");
-  v.needs(unit == VerticalUnit::same || model_is_there,
-          fault(model + "_vertical_unit is given without " + model + "_dem", "there are no heights that it speaks of",
-                "Leave it out, or use vertical_unit, which is for all elevation models"));
-}
-
 }  // namespace
 
 void ElevationOptions::describe(recipe::Visitor& v, const Options& all) {
@@ -71,8 +56,6 @@ void ElevationOptions::describe(recipe::Visitor& v, const Options& all) {
        {"foot", VerticalUnit::foot},
        {"us-survey-foot", VerticalUnit::us_survey_foot}},
       "what the elevation models' heights are in; declared = what each file says, metres where it says nothing");
-  describe_unit(v, "before", before_vertical_unit, all.in_laboratory() || !before_dem.empty());
-  describe_unit(v, "after", after_vertical_unit, all.in_laboratory() || !after_dem.empty());
 }
 
 }  // namespace talus::preprocess

@@ -14,14 +14,13 @@ struct Options;
 
 /// What the heights of elevation models are in: what the files say, or this. `same`: of one model, as of all the
 /// others.
-enum class VerticalUnit { declared, metre, foot, us_survey_foot, same };
+enum class VerticalUnit { declared, metre, foot, us_survey_foot };
 
 /// The keys of [preprocess] itself.
 struct ElevationOptions {
   std::filesystem::path before_dem, after_dem, sliding_surface, base_dem;
   std::string working_crs;
-  VerticalUnit vertical_unit = VerticalUnit::declared;  ///< never `same`
-  VerticalUnit before_vertical_unit = VerticalUnit::same, after_vertical_unit = VerticalUnit::same;
+  VerticalUnit vertical_unit = VerticalUnit::declared;
 
   /// The DEM that gives the working grid its CRS, registration and cell.
   const std::filesystem::path& first_dem() const { return base_dem.empty() ? before_dem : base_dem; }

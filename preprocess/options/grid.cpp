@@ -20,13 +20,6 @@ bool three_positive(const std::vector<int>& numbers) {
   return numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(), [](int n) { return n > 0; });
 }
 
-/// This function declares that `low` lies below `high`, where both are given; `order` says so in words.
-void need_order(recipe::Visitor& v, const char* keys, const std::optional<double>& low,
-                const std::optional<double>& high, const char* order) {
-  v.needs(!low || !high || *low < *high,
-          fault(fmt::format(fmt::runtime(keys), low.value_or(0), high.value_or(0)), order, "Swap them"));
-}
-
 }  // namespace
 
 bool GridOptions::stands_alone() const {
@@ -48,16 +41,13 @@ void GridOptions::describe(recipe::Visitor& v) {
   v.needs(three_positive(points_per_cell),
           fault(fmt::format("grid.points_per_cell = [{}]", fmt::join(points_per_cell, ", ")),
                 "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]"));
-  v.number("minimum_thickness_m", minimum_thickness, recipe::not_negative,
-           "columns thinner than this get one point (of the same volume) instead of points_per_cell");
   v.number("jitter", jitter, recipe::Range{0, 0.5}, "random shift of the points, as a part of their spacing");
   v.integer("jitter_seed", jitter_seed, recipe::not_negative, "seed of that shift");
-  v.optional_number("west_m", west, recipe::any, "western edge of the working grid; none = where all DEMs overlap");
-  v.optional_number("south_m", south, recipe::any, "southern edge");
-  v.optional_number("east_m", east, recipe::any, "eastern edge");
-  need_order(v, "grid.west_m = {}, east_m = {}", west, east, "west must lie west of east");
-  v.optional_number("north_m", north, recipe::any, "northern edge");
-  need_order(v, "grid.south_m = {}, north_m = {}", south, north, "south must lie south of north");
+  v.numbers("extent_m", extent, recipe::any,
+            "[west, south, east, north] of the working grid, as gdalwarp -te; empty = where all DEMs overlap");
+  v.needs(extent.empty() || (extent.size() == 4 && extent[0] < extent[2] && extent[1] < extent[3]),
+          fault(fmt::format("grid.extent_m = [{}]", fmt::join(extent, ", ")),
+                "it must be west, south, east and north, west below east and south below north", "Sort them so"));
   recipe::choice(
       v, "edge_nodata", edge_nodata, {{"refuse", EdgeNodata::refuse}, {"outside", EdgeNodata::outside}},
       "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");

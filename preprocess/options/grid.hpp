@@ -3,7 +3,6 @@
 // The background grid and the material points in it.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -18,10 +17,9 @@ struct GridOptions {
   double spacing = 0;       ///< [m]; 0: the cell of the first DEM
   double layer_height = 0;  ///< [m]; 0: by the thickness of the release (default_layer_height()), or spacing
   std::vector<int> points_per_cell{2, 2, 2};
-  double minimum_thickness = 0;  ///< [m]
   double jitter = 0;
   int jitter_seed = 1;
-  std::optional<double> west, south, east, north;  ///< [m]
+  std::vector<double> extent;  ///< west, south, east, north [m]; empty: where all DEMs overlap
   EdgeNodata edge_nodata = EdgeNodata::refuse;
 
   /// Whether the grid is given without an elevation model, and each of its cells holds points.

@@ -37,10 +37,8 @@ void need_no_other_way(recipe::Visitor& v, const Options& o) {
   exclude(!o.source.polygon.empty(), "source.polygon", two_ways, choose);
   exclude(!o.release.empty(), "[[preprocess.release]]", two_ways, choose);
   exclude(!o.working_crs.empty(), "working_crs", "a laboratory lies in local coordinates", "Leave it out");
-  exclude(o.grid.west || o.grid.south || o.grid.east || o.grid.north, "grid.west_m or its like",
-          "there is no elevation model to crop", "Use laboratory.west_m, south_m, columns and rows");
-  exclude(o.grid.minimum_thickness > 0, "grid.minimum_thickness_m", "boxes are filled by a regular lattice",
-          "Leave it out");
+  exclude(!o.grid.extent.empty(), "grid.extent_m", "there is no elevation model to crop",
+          "Use laboratory.west_m, south_m, columns and rows");
 }
 
 }  // namespace

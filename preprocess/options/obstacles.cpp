@@ -17,9 +17,6 @@ void ObstacleOptions::describe(recipe::Visitor& v, const std::string& place) {
           fault(place + ": polygons is not given", "its footprint is not known", "Name a vector file"));
   v.text("attribute", attribute, "the polygons' attribute that holds their height above the ground [m]");
   v.number("height_m", height, recipe::not_negative, "one height for all of them; 0 = that of the attribute");
-  v.number("voxel_m", voxel, recipe::not_negative,
-           "voxels of obstacles.vdb: the smallest given counts; 0 = a quarter of the smaller of spacing_m and "
-           "layer_height_m");
 }
 
 void describe_obstacles(recipe::Visitor& v, std::vector<ObstacleOptions>& obstacles) {

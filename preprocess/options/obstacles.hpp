@@ -17,7 +17,6 @@ struct ObstacleOptions {
   std::filesystem::path polygons;
   std::string attribute = "height";
   double height = 0;  ///< one height for all polygons [m]; 0: that of the attribute
-  double voxel = 0;   ///< [m]; 0: a quarter of the smaller spacing
 
   /// The method declares the keys with defaults and help; messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place);

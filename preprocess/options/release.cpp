@@ -32,14 +32,17 @@ void ReleaseOptions::describe(recipe::Visitor& v, const std::string& place, bool
   v.needs(!needed || polygons.empty() || thickness != 0 || !attribute.empty(),
           fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
                 "Name the attribute that holds the thickness, or give thickness_m"));
+  recipe::choice(v, "direction", direction,
+                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
+                 "which way the thickness is measured");
+}
+
+void ReleaseOptions::describe_change(recipe::Visitor& v, const std::string& place, bool needed) {
   v.number("volume_factor", volume_factor, recipe::positive, "its thickness, and so its volume, times this");
   v.number("grow_m", grow, recipe::any, "the polygons grown by this on all sides; negative: shrunk");
   v.needs(!needed || grow == 0 || !polygons.empty(),
           fault(place + ": grow_m is given without polygons", "a raster of thickness has no outline to grow",
                 "Leave it out, or give the release by polygons"));
-  recipe::choice(v, "direction", direction,
-                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
-                 "which way the thickness is measured");
 }
 
 void ErodibleOptions::describe(recipe::Visitor& v, const std::string& place, const Options& all) {
@@ -63,6 +66,7 @@ void describe_layers(recipe::Visitor& v, Options& o) {
                [&](ReleaseOptions& release, std::size_t item) {
                  const std::string place = fmt::format("release {}", item + 1);
                  release.describe(v, place, !o.in_laboratory());
+                 release.describe_change(v, place, !o.in_laboratory());
                  need_own_name(place, release.name);
                });
   recipe::list(

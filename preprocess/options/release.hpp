@@ -31,6 +31,8 @@ struct ReleaseOptions {
   /// The method declares the keys with defaults and help, and, where a thickness is `needed`, that one is given;
   /// messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place, bool needed);
+  /// Declares the keys by which an ensemble varies a release.
+  void describe_change(recipe::Visitor& v, const std::string& place, bool needed);
 };
 
 /// One [[preprocess.erodible]]: a layer of ground, given as a release is, or all that was lowered outside the source.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/options/source.hpp"
 
+#include <fmt/format.h>
+
 #include "preprocess/options/fault.hpp"
 #include "preprocess/options/options.hpp"
 
@@ -12,7 +14,7 @@ void SlidingSurfaceOptions::describe(recipe::Visitor& v, const Options& all) {
   v.number("depth_m", depth, recipe::not_negative, "largest vertical depth below before_dem; 0 = not given");
   v.number("volume_m3", volume, recipe::not_negative, "volume between it and before_dem; 0 = not given");
   v.path("depth_points", depth_points,
-         "places where it is known (boreholes): vector points, or a table of x, y and z or depth, heights in "
+         "places where it is known (boreholes): vector points, or a table of x, y and depth, or z of the surface, in "
          "vertical_unit; none of the three: volume from the polygon's area (Guzzetti et al. 2009)");
   v.needs(ignored || ways_given() <= 1,
           fault("source.sliding_surface: more than one of depth_m, volume_m3 and depth_points is given",
@@ -21,15 +23,10 @@ void SlidingSurfaceOptions::describe(recipe::Visitor& v, const Options& all) {
           fault("source.sliding_surface is given, but not before_dem and source.polygon alone",
                 "only there is a sliding surface computed; elsewhere the files hold it",
                 "Leave it out, or leave after_dem, sliding_surface and base_dem out"));
-  recipe::choice(v, "depth_points_hold", depth_points_hold,
-                 {{"elevation", PointValue::elevation}, {"depth", PointValue::depth}},
-                 "what the z of these points is where it is not named depth: elevation of the sliding surface, or its "
-                 "vertical depth below before_dem");
   v.number("depth_points_error_m", depth_points_error, recipe::not_negative,
            "standard error of these points; 0 = met exactly");
-  const bool speaks_of_points = depth_points_error > 0 || depth_points_hold != PointValue::elevation;
-  v.needs(ignored || !depth_points.empty() || !speaks_of_points,
-          fault("source.sliding_surface: depth_points_hold or depth_points_error_m is given without depth_points",
+  v.needs(ignored || !depth_points.empty() || !(depth_points_error > 0),
+          fault("source.sliding_surface: depth_points_error_m is given without depth_points",
                 "there are no points to read", "Give depth_points"));
 }
 
@@ -50,13 +47,13 @@ void SourceOptions::describe(recipe::Visitor& v, const Options& all) {
           fault("source.grow_m is given without source.polygon", "there is no outline to grow",
                 "Give the polygon, or leave it out"));
   v.number("threshold_m", threshold, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
-  v.optional_number("seed_x_m", seed_x, recipe::any,
-                    "take the region that holds this point (its easting); else the largest by volume");
-  v.optional_number("seed_y_m", seed_y, recipe::any, "its northing");
-  v.needs(ignored || seed_x.has_value() == seed_y.has_value(),
-          fault("only one of source.seed_x_m and seed_y_m is given", "a point has both", "Give both or none"));
-  v.needs(ignored || !seed_x || polygon.empty(), fault("source.polygon and a seed point are both given",
-                                                       "the polygon already says what the source is", "Leave one out"));
+  v.numbers("seed_m", seed, recipe::any,
+            "[easting, northing]: take the region that holds this point; empty = the largest by volume");
+  v.needs(ignored || seed.empty() || seed.size() == 2, fault(fmt::format("source.seed_m has {} values", seed.size()),
+                                                             "a point has two", "Give [easting, northing]"));
+  v.needs(ignored || seed.empty() || polygon.empty(),
+          fault("source.polygon and a seed point are both given", "the polygon already says what the source is",
+                "Leave one out"));
   recipe::table(v, "sliding_surface", sliding_surface,
                 "(5) how deep the surface lies that is computed under the polygon: give one of the first three", all);
 }

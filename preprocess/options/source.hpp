@@ -4,8 +4,8 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/gis/polygons.hpp"
 #include "common/recipe/recipe.hpp"
@@ -14,15 +14,11 @@ namespace talus::preprocess {
 
 struct Options;
 
-/// What the numbers of depth points are.
-enum class PointValue { elevation, depth };
-
 /// How deep the sliding surface lies that is computed under source.polygon. None given: by the area of the polygon.
 struct SlidingSurfaceOptions {
   double depth = 0;   ///< largest vertical one [m]; 0: not given
   double volume = 0;  ///< [m3]; 0: not given
   std::filesystem::path depth_points;
-  PointValue depth_points_hold = PointValue::elevation;
   double depth_points_error = 0;  ///< standard error [m]
 
   /// How many of depth, volume and points are given.
@@ -34,11 +30,11 @@ struct SlidingSurfaceOptions {
 /// The keys of [preprocess.source].
 struct SourceOptions {
   std::filesystem::path polygon;
-  std::string layer = "source";          ///< of `polygon`; empty, or none of that name: the first
-  std::string where;                     ///< which of its polygons, by attributes; empty: all
-  double grow = 0;                       ///< of the polygon, outwards [m]
-  double threshold = 0.5;                ///< [m]
-  std::optional<double> seed_x, seed_y;  ///< easting, northing [m]
+  std::string layer = "source";  ///< of `polygon`; empty, or none of that name: the first
+  std::string where;             ///< which of its polygons, by attributes; empty: all
+  double grow = 0;               ///< of the polygon, outwards [m]
+  double threshold = 0.5;        ///< [m]
+  std::vector<double> seed;      ///< easting, northing [m]; empty: the largest region
   SlidingSurfaceOptions sliding_surface;
 
   /// Which polygons of the file are the outline.

@@ -17,26 +17,18 @@ enum class Alignment { check, apply, off };
 /// The keys of [preprocess.coregistration].
 struct CoregistrationOptions {
   Alignment mode = Alignment::check;
-  bool tilt = true;
-  double steepest = 45;  ///< [deg]
   std::filesystem::path changed;
 
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const Options& all);
 };
 
-/// From which difference on a change is believed (the vocabulary of GCD, Wheaton et al. 2010).
-enum class Threshold { minimum_level, propagated_error, probabilistic };
-
 /// The keys of [preprocess.difference].
 struct DifferenceOptions {
-  Threshold threshold = Threshold::probabilistic;
   double confidence = 0.95;
-  double minimum_level = 0;                  ///< [m]
-  double before_sigma = 0, after_sigma = 0;  ///< [m]; 0: learnt from stable ground
+  double minimum_level = 0;  ///< [m]
+  double sigma = 0;          ///< of the difference [m]; 0: learnt from stable ground
 
-  /// sqrt(s1^2 + s2^2) [m]; 0 where neither is given.
-  double given_sigma() const;
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const Options& all);
 };
@@ -44,7 +36,9 @@ struct DifferenceOptions {
 /// The keys of [preprocess.deposit]: what arrived, for after_dem.
 struct DepositOptions {
   std::filesystem::path polygon;
-  double threshold = 0.5;     ///< [m]
+  double threshold = 0.5;  ///< [m]
+
+  // Fixed numbers without a key (docs/notes/surveys-and-release.md).
   int bridge_cells = 10;      ///< [cells]
   double longest_gap = 1;     ///< over the distance from the crown to where the gap begins
   double steepest_rest = 30;  ///< [deg]

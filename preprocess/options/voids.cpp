@@ -8,15 +8,17 @@
 namespace talus::preprocess {
 
 void VoidOptions::describe(recipe::Visitor& v, const Options& all) {
-  v.flag("fill", fill, "fill voids inside the elevation models by natural neighbours; else they are refused by place");
-  v.number("largest_m2", largest, recipe::not_negative, "area of the largest void that is filled");
+  v.number(
+      "fill_m2", fill, recipe::not_negative,
+      "voids inside the elevation models of up to this area are filled by natural neighbours; larger ones, and all "
+      "with 0, are refused by place");
   recipe::choice(
       v, "spikes", spikes, {{"ignore", Spikes::ignore}, {"report", Spikes::report}, {"remove", Spikes::remove}},
       "cells that stand out from their neighbours (ten times the usual around): remove = make them voids and fill "
       "them");
-  v.needs(all.in_laboratory() || spikes != Spikes::remove || fill,
-          fault("voids.spikes = \"remove\" without voids.fill", "what is removed is filled like a void",
-                "Set fill = true in [preprocess.voids], or spikes = \"report\""));
+  v.needs(all.in_laboratory() || spikes != Spikes::remove || fill > 0,
+          fault("voids.spikes = \"remove\" without voids.fill_m2", "what is removed is filled like a void",
+                "Set fill_m2 = 1e5 in [preprocess.voids], or spikes = \"report\""));
 }
 
 }  // namespace talus::preprocess

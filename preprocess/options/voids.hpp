@@ -14,8 +14,7 @@ enum class Spikes { ignore, report, remove };
 
 /// The keys of [preprocess.voids].
 struct VoidOptions {
-  bool fill = false;
-  double largest = 1e5;  ///< area [m2]
+  double fill = 0;  ///< largest area that is filled [m2]
   Spikes spikes = Spikes::report;
 
   /// The method declares the keys with defaults, help and what they need of `all` others.

@@ -23,7 +23,6 @@ struct Counts {
 };
 
 Counts counts_for(double thickness, const Seeding& s) {
-  if (thickness < s.minimum_thickness) return {1, 1, 1};
   const double layers = std::round(thickness / s.layer_height * s.in_height);
   return {s.along_x, s.along_y, static_cast<int>(std::clamp(layers, 1.0, most))};
 }
@@ -72,7 +71,6 @@ Seeding seeding_of(const GridOptions& options, double layer_height) {
           options.points_per_cell.at(1),
           options.points_per_cell.at(2),
           layer_height,
-          options.minimum_thickness,
           options.jitter,
           static_cast<std::uint64_t>(options.jitter_seed)};
 }

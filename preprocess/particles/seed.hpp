@@ -16,7 +16,6 @@ namespace talus::preprocess {
 struct Seeding {
   int along_x = 2, along_y = 2, in_height = 2;  // points per cell of the background grid
   double layer_height = 0;                      // h_z [m]
-  double minimum_thickness = 0;                 // thinner columns get one point [m]
   double jitter = 0;                            // 0..0.5 of the points' spacing
   std::uint64_t jitter_seed = 1;
 };

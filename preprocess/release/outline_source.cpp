@@ -61,7 +61,6 @@ bool is_inside(const Outline& outline, double x, double y) {
 std::vector<DepthPoint> depth_points(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o,
                                      const ReadOptions& how) {
   const ScatteredPoints read = read_on_grid(o.depth_points, before.grid, how);
-  const bool are_depths = read.are_depths || o.depth_points_hold == PointValue::depth;
   std::vector<DepthPoint> points;
   std::vector<Fault> faults;
   for (std::size_t i = 0; i < read.x.size(); ++i) {
@@ -73,15 +72,13 @@ std::vector<DepthPoint> depth_points(const Raster& before, const Outline& outlin
       continue;
     }
     const double ground = value_at(before, read.x[i], read.y[i]);
-    const double depth = are_depths ? read.z[i] : ground - read.z[i];
+    const double depth = read.are_depths ? read.z[i] : ground - read.z[i];
     if (depth > 0) {
       points.push_back({read.x[i], read.y[i], depth, o.depth_points_error});
     } else {
-      faults.push_back(
-          {fmt::format("{}, depth {:.2f} m", place, depth),
-           fmt::format("the sliding surface lies below the ground, which is at {:.2f} m there", ground),
-           "Check its value and unit, the vertical datum, and whether depth_points_hold is \"elevation\" or "
-           "\"depth\""});
+      faults.push_back({fmt::format("{}, depth {:.2f} m", place, depth),
+                        fmt::format("the sliding surface lies below the ground, which is at {:.2f} m there", ground),
+                        "Check its value and unit, and the vertical datum; name a column of depths \"depth\""});
     }
   }
   if (!faults.empty()) throw DataError(std::move(faults));

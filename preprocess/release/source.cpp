@@ -45,11 +45,11 @@ Raster lowering_of(const SurfacePair& s) {
 }
 
 std::size_t seed_cell(const MapGrid& grid, const SourceOptions& options) {
-  const double column = std::floor((*options.seed_x - grid.west) / grid.cell),
-               row = std::floor((*options.seed_y - grid.south) / grid.cell);
+  const double column = std::floor((options.seed[0] - grid.west) / grid.cell),
+               row = std::floor((options.seed[1] - grid.south) / grid.cell);
   if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) {
     throw RecipeError(
-        Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", *options.seed_x, *options.seed_y),
+        Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", options.seed[0], options.seed[1]),
               fmt::format("it lies outside the working grid, x {:.1f}..{:.1f}, y {:.1f}..{:.1f}", grid.west,
                           grid.east(), grid.south, grid.north()),
               "Give a point inside the source, in the CRS of the working grid"});
@@ -58,13 +58,13 @@ std::size_t seed_cell(const MapGrid& grid, const SourceOptions& options) {
 }
 
 const Region& chosen(const std::vector<Region>& regions, const Raster& lowering, const SourceOptions& options) {
-  if (!options.seed_x) return regions.front();
+  if (options.seed.empty()) return regions.front();
   const std::size_t seed = seed_cell(lowering.grid, options);
   for (const Region& region : regions) {
     if (std::binary_search(region.cells.begin(), region.cells.end(), seed)) return region;
   }
   throw RecipeError(
-      Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", *options.seed_x, *options.seed_y),
+      Fault{fmt::format("[preprocess.source]: seed point x {:.1f}, y {:.1f}", options.seed[0], options.seed[1]),
             fmt::format("the lowering there is {:.3g} m, not more than threshold_m = {:g}", lowering.values[seed],
                         options.threshold),
             fmt::format("The largest region, of {} m3, holds {}", grouped(regions.front().volume),

@@ -26,8 +26,7 @@ bool is_angle(std::string_view number) { return number.ends_with("_angle_deg"); 
 
 /// What is wrong with a value; empty where nothing is.
 std::string fault_of(std::string_view number, double value) {
-  constexpr std::array<std::string_view, 4> positive{"turbulence_m_s2", "characteristic_speed_m_s", "roughness_m",
-                                                     "layer_length_m"};
+  constexpr std::array<std::string_view, 3> positive{"turbulence_m_s2", "characteristic_speed_m_s", "layer_length_m"};
   if (!std::isfinite(value)) return "it is no number";
   if (is_angle(number)) return value >= 0 && value < 90 ? "" : "an angle lies from 0 to below 90";
   if (number == "pore_pressure_ratio") return value >= 0 && value <= 1 ? "" : "a ratio lies between 0 and 1";

@@ -80,15 +80,11 @@ void lay_turbulence(double xi, const std::vector<double>& share, Raster& turbule
 
 }  // namespace
 
-void lay_bed_zones(const BedRasters& options, const Raster& ground, double volume,
+void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
                    std::vector<std::pair<std::string, Raster>>& bed) {
-  for (std::size_t z = 0; z < options.zones.size(); ++z) {
-    const BedZone& zone = options.zones[z];
+  for (std::size_t z = 0; z < zones.size(); ++z) {
+    const BedZone& zone = zones[z];
     const std::string place = fmt::format("[[preprocess.bed.zone]] number {}", z + 1);
-    if (!zone.holds_for(volume, options.return_period_years)) {
-      log_info(fmt::format("{}: does not hold for {:.0f} m3 and this return period", place, volume));
-      continue;
-    }
     const std::vector<double> share = shares_of(zone, ground);
     double cells = 0;
     for (const double part : share) cells += part;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Zones of the bed's friction: rows by elevation, ground, volume and return period, as rasters of the bed.
+// Zones of the bed's friction: rows by elevation and ground, as rasters of the bed.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@
 
 namespace talus::preprocess {
 
-/// This function lays the zones that hold for a released volume [m3] over the rasters of the bed, in the order of the
+/// This function lays the zones over the rasters of the bed, in the order of the
 /// recipe, and says how much ground each has. A cell that polygons cover in part gets that part: of the coefficient,
 /// and of the drag, which is proportional to 1 / xi. Throws DataError: polygons that are not valid, or a coefficient
 /// added where none is known or below 0.
-void lay_bed_zones(const BedRasters& options, const Raster& ground, double volume,
+void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
                    std::vector<std::pair<std::string, Raster>>& bed);
 
 }  // namespace talus::preprocess

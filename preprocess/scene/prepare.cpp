@@ -85,8 +85,9 @@ void lay_erodible(const Options& options, SceneRasters& scene) {
 std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, const MapGrid& grid) {
   const bool reproject = !options.working_crs.empty();
   std::vector<std::pair<std::string, Raster>> rasters;
-  for (const auto& [name, file] : options.bed.files) {
-    if (file.empty()) continue;
+  for (const BedRaster& one : options.bed.rasters) {
+    const auto& file = one.file;
+    const std::string name(one.name());
     const Elevation values = read_elevation(
         "bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading("", VerticalUnit::declared).or_else});
     require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
@@ -141,13 +142,11 @@ void add_volumes(const SceneRasters& scene, Prepared& prepared) {
   }
 }
 
-/// The bodies that stand on the ground, and how finely they are written: the smallest voxel that one of them asks for.
+/// The bodies that stand on the ground, and how finely they are written.
 void add_obstacles(const Options& options, const Raster& bed, Prepared& prepared) {
   const Domain& domain = prepared.domain;
   prepared.obstacles = upright_obstacles(options.obstacle, bed, 2 * domain.layer_height);
   prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
-  for (const ObstacleOptions& o : options.obstacle)
-    if (o.voxel > 0) prepared.obstacle_voxel = std::min(prepared.obstacle_voxel, o.voxel);
 }
 
 /// Refuses more points than can be numbered or held, and warns of so many that they take long.
@@ -190,7 +189,7 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
     add(release.thickness_raster);
     add(release.polygons);
   }
-  for (const auto& [name, file] : options.bed.files) add(file);
+  for (const BedRaster& raster : options.bed.rasters) add(raster.file);
   add(options.bed.polygons);
   for (const BedZone& zone : options.bed.zones) add(zone.polygons);
   for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
@@ -234,7 +233,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options, domain.grid);
   if (!options.bed.polygons.empty()) lay_bed_polygons(options.bed.polygons, scene.bed, domain.bed);
-  lay_bed_zones(options.bed, scene.bed, prepared.total.volume, domain.bed);
+  lay_bed_zones(options.bed.zones, scene.bed, domain.bed);
   add_obstacles(options, scene.bed, prepared);
   domain.places = read_places(options.place, scene.bed);
   domain.terrain = std::move(scene.bed);

@@ -24,16 +24,8 @@ namespace {
 
 constexpr int enough = 512;  // cells in the middle of a map, each way: they tell how steep it is
 
-/// How a model is read whose heights are in `of_model`, or in the unit that the recipe gives for all.
-ReadOptions reading(const Options& options, VerticalUnit of_model = VerticalUnit::same) {
-  return dem_reading(options.working_crs, of_model == VerticalUnit::same ? options.vertical_unit : of_model);
-}
-
-/// The unit that the recipe gives for the heights of the first elevation model.
-VerticalUnit unit_of_first(const Options& options) {
-  const bool own = !options.before_dem.empty() && options.before_vertical_unit != VerticalUnit::same;
-  return own ? options.before_vertical_unit : options.vertical_unit;
-}
+/// How an elevation model is read.
+ReadOptions reading(const Options& options) { return dem_reading(options.working_crs, options.vertical_unit); }
 
 std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
                           std::vector<Filled>* filled = nullptr) {
@@ -86,7 +78,7 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
 }
 
 SceneRasters from_sliding_surface(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
+  Elevation before = read_elevation("before_dem", options.before_dem, reading(options));
   Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
@@ -103,7 +95,7 @@ SceneRasters from_sliding_surface(const Options& options) {
 }
 
 SceneRasters from_outline(const Options& options) {
-  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
+  Elevation before = read_elevation("before_dem", options.before_dem, reading(options));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
   ComputedSource computed = source_by_outline(ground, options.source, reading(options));
@@ -155,7 +147,7 @@ Acceptance judged(const Options& options, const SceneRasters& scene) {
   if (options.way() == Way::laboratory) return acceptance;
   acceptance.collect();
   judge_lengths(scene.bed.grid, options.working_crs, acceptance);
-  judge_heights(scene.before, {options.first_dem(), unit_of_first(options)}, acceptance);
+  judge_heights(scene.before, {options.first_dem(), options.vertical_unit}, acceptance);
   acceptance.settle();
   return acceptance;
 }
@@ -189,7 +181,6 @@ std::string SurveyMemory::mark_of(Options options) {
   options.bed = {};
   options.grid.layer_height = fresh.layer_height;
   options.grid.points_per_cell = fresh.points_per_cell;
-  options.grid.minimum_thickness = fresh.minimum_thickness;
   options.grid.jitter = fresh.jitter;
   options.grid.jitter_seed = fresh.jitter_seed;
   return recipe::to_toml(options, "preprocess", false);
@@ -229,8 +220,8 @@ SceneRasters read_scene(const Options& given, SurveyMemory* memory) {
 Survey survey_of(const Options& given) {
   Options options = given;
   if (options.working_crs == "utm") options.working_crs = utm_zone_for(options.first_dem());
-  Elevation before = read_elevation("before_dem", options.before_dem, reading(options, options.before_vertical_unit));
-  Elevation after = read_elevation("after_dem", options.after_dem, reading(options, options.after_vertical_unit));
+  Elevation before = read_elevation("before_dem", options.before_dem, reading(options));
+  Elevation after = read_elevation("after_dem", options.after_dem, reading(options));
   share_crs({&before, &after}, options.working_crs);
   Survey survey = compare_surveys(std::move(before), std::move(after), options);
   survey.accepted = Acceptance("preprocess", options.accept);
@@ -240,7 +231,7 @@ Survey survey_of(const Options& given) {
   const int columns = std::min(enough, grid.columns), rows = std::min(enough, grid.rows);
   judge_heights(
       onto_grid(survey.before, cut(grid, {(grid.columns - columns) / 2, (grid.rows - rows) / 2, columns, rows})),
-      {options.before_dem, unit_of_first(options)}, survey.accepted);
+      {options.before_dem, options.vertical_unit}, survey.accepted);
   return survey;
 }
 

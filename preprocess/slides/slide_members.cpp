@@ -62,9 +62,9 @@ std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapG
     if (slide.volume > 0)
       values.push_back("preprocess.source.sliding_surface.volume_m3=" + recipe::toml_number(slide.volume));
   }
-  for (const auto& [side, at] :
-       {std::pair{"west", window.west}, {"south", window.south}, {"east", window.east()}, {"north", window.north()}})
-    values.push_back(fmt::format("preprocess.grid.{}_m={}", side, recipe::toml_number(at)));
+  values.push_back(fmt::format("preprocess.grid.extent_m=[{}, {}, {}, {}]", recipe::toml_number(window.west),
+                               recipe::toml_number(window.south), recipe::toml_number(window.east()),
+                               recipe::toml_number(window.north())));
   return values;
 }
 
@@ -132,8 +132,7 @@ ModelIs model_of(const recipe::Recipe& recipe) {
                                  : "[slides]: neither base_dem nor before_dem is given in [preprocess]",
                             "all slides lie on one elevation model",
                             "Give base_dem (a mass is laid onto it) or before_dem (it is cut out of it)"});
-  for (const char* key :
-       {"release", "polygon", "after_dem", "laboratory", "box", "place", "west_m", "south_m", "east_m", "north_m"})
+  for (const char* key : {"release", "polygon", "after_dem", "laboratory", "box", "place", "extent_m"})
     if (gives(recipe, key))
       throw RecipeError(Fault{fmt::format("[preprocess]: {} beside [slides]", key),
                               "[slides] says what fails, and which part of the model each slide gets", "Leave it out"});

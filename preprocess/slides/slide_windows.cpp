@@ -28,9 +28,8 @@ constexpr double degrees = M_PI / 180;
 /// The model of the recipe; each thread opens it for itself.
 Elevation open_model(const Options& shared) {
   const bool onto = shared.before_dem.empty();
-  const VerticalUnit own = onto ? VerticalUnit::same : shared.before_vertical_unit;
   return read_elevation(onto ? "base_dem" : "before_dem", shared.first_dem(),
-                        dem_reading(shared.working_crs, own == VerticalUnit::same ? shared.vertical_unit : own));
+                        dem_reading(shared.working_crs, shared.vertical_unit));
 }
 
 /// The cells that a rectangle touches.

@@ -47,12 +47,12 @@ void refuse_feet(const std::vector<Patch>& patches, const Placement& placement,
   for (const double feet : {1 / 0.3048, 0.3048}) {
     if (!(std::abs(ratio / feet - 1) < 0.15)) continue;  // no slide changes the relief of a map threefold
     const bool later = feet > 1;
-    throw DataError(
-        Fault{fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
-              later ? "its heights look like feet" : "the heights of the survey before look like feet",
-              fmt::format("Say so in [preprocess]: {0}_vertical_unit = \"foot\" or \"us-survey-foot\"; or, where the "
-                          "other one is said to be in feet and is not, {1}_vertical_unit = \"metre\"",
-                          later ? "after" : "before", later ? "before" : "after")});
+    throw DataError(Fault{
+        fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
+        later ? "its heights look like feet" : "the heights of the survey before look like feet",
+        fmt::format("Declare it in {0}_dem: gdal_edit.py -units foot (or us-survey-foot) FILE; or, where the other "
+                    "one is said to be in feet and is not, in {1}_dem: gdal_edit.py -units metre FILE",
+                    later ? "after" : "before", later ? "before" : "after")});
   }
 }
 

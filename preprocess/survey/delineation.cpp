@@ -91,18 +91,15 @@ std::string outside_words(const SurveyedSlide& slide) {
   if (slide.outside_is_doubtful) {
     words += fmt::format(
         ". Of what counts as noise, {} m3 of rise and {} m3 of fall lie within reach of the slide, {:.0f} % of what "
-        "fell "
-        "or rose in it: so much may be missing in source, deposit and run-out, and in every score against them. If it "
-        "belongs to the slide, lower sure_cells = {} or sure_levels = {:g} in [preprocess.deposit], or draw the "
-        "deposit "
-        "(polygon)",
+        "fell or rose in it: so much may be missing in source, deposit and run-out, and in every score against them. "
+        "If it belongs to the slide, draw the deposit: polygon in [preprocess.deposit]",
         grouped(slide.near.rise), grouped(slide.near.fall),
-        100 * std::max(slide.near.rise, slide.near.fall) / larger_of(slide), slide.sure_cells, slide.sure_levels);
+        100 * std::max(slide.near.rise, slide.near.fall) / larger_of(slide));
   }
   if (!slide.outside_is_large) return words;
   return words + fmt::format(
                      ". That is {:.0f} % of what fell or rose in the slide, too much for a score: if it belongs to the "
-                     "slide, raise longest_gap or bridge_cells in [preprocess.deposit], or draw the deposit (polygon)",
+                     "slide, draw the deposit: polygon in [preprocess.deposit]",
                      100 * o.unbalanced() / larger_of(slide));
 }
 
@@ -139,8 +136,6 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Deposi
       {"deposit", volume_in(slide.deposit, slide, survey.deposit.empty() ? &change : nullptr, survey.errors)}};
   const double share = given.outside_share * larger_of(slide);
   slide.outside_is_large = survey.deposit.empty() && slide.outside.unbalanced() > share;
-  slide.sure_cells = given.sure_cells;
-  slide.sure_levels = given.sure_levels;
   if (!survey.deposit.empty() || slide.outside_is_large) return;
   slide.near = change_near({before, source}, change, inside, given);
   slide.outside_is_doubtful = std::max(slide.near.rise, slide.near.fall) > share;

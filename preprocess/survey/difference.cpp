@@ -32,14 +32,7 @@ Block block_of(const Elevation& before, const Elevation& after, const MapGrid& p
 
 }  // namespace
 
-double Detection::level(double sigma) const {
-  switch (threshold) {
-    case Threshold::minimum_level: return minimum_level;
-    case Threshold::propagated_error: return std::max(minimum_level, sigma);
-    case Threshold::probabilistic: break;
-  }
-  return std::max(minimum_level, quantile * sigma);
-}
+double Detection::level(double sigma) const { return std::max(minimum_level, quantile * sigma); }
 
 void BudgetSum::add(double difference, double sigma) {
   if (difference == 0) {

@@ -14,7 +14,6 @@ namespace talus::preprocess {
 
 /// From which difference on a change is believed.
 struct Detection {
-  Threshold threshold = Threshold::probabilistic;
   double minimum_level = 0;  ///< [m]; the least level in any case
   double quantile = 1.96;    ///< of the normal distribution, two-sided: 1.96 = 95 %
 

@@ -70,9 +70,8 @@ MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Opt
       fmt::format(
           "{} cells are needed that are neither steep nor rough nor part of the slide, and more of them than changed",
           least_cells),
-      "Give elevation models that reach further beyond the slide, raise steepest_deg in [preprocess.coregistration], "
-      "name the changed ground there, or align the models "
-      "beforehand and set mode = \"off\""});
+      "Give elevation models that reach further beyond the slide, name the changed ground in "
+      "[preprocess.coregistration], or align the models beforehand and set mode = \"off\""});
 }
 
 double largest_shift_error(const Survey& s) { return std::max(s.fit.shift_error[0], s.fit.shift_error[1]); }
@@ -114,9 +113,7 @@ void warn_of_vague_shift(const Survey& s) {
 void warn_of_unknown_error(const Survey& s) {
   constexpr double noticeable_share = 0.1;
   const double same = s.errors.same_share();
-  const std::string mend =
-      "Give what the surveys themselves are good for: before_sigma_m and after_sigma_m in "
-      "[preprocess.difference]";
+  const std::string mend = "Give what the surveys themselves are good for: sigma_m in [preprocess.difference]";
   if (!s.errors.is_known()) {
     log_warning(
         fmt::format("{}: the error of its difference from {} is not known ({}): no error is stated, and changes "
@@ -162,14 +159,13 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   s.after = std::move(after);
   s.grid = whole_overlap(s.before, s.after, options);
   read_outlines(s, options);
-  s.detection = {options.difference.threshold, options.difference.minimum_level,
-                 normal_quantile(options.difference.confidence)};
-  const double given = options.difference.given_sigma();
+  s.detection = {options.difference.minimum_level, normal_quantile(options.difference.confidence)};
+  const double given = options.difference.sigma;
   s.errors = ErrorModel::of(given);
   if (how.mode == Alignment::off && given > 0) return s;
   std::vector<Patch> patches = patches_of(s.before, s.after, s.grid);
-  find_stable(patches, {how.steepest, 3, changed_ground(s, how.changed)});
-  s.fit = coregister(patches, how.tilt, s.after.file);
+  find_stable(patches, {.outside = changed_ground(s, how.changed)});
+  s.fit = coregister(patches, true, s.after.file);
   if (!s.fit.known && how.mode == Alignment::apply) refuse_alignment(s, s.grid.count());
   s.applied = how.mode == Alignment::apply;
   if (how.mode != Alignment::off) say_alignment(s);

@@ -57,8 +57,6 @@ struct SurveyedSlide {
   bool outside_is_large = false;  // and is not explained: beside source and deposit, by itself, or by a given outline
   Near near = {};                 // what counts as noise though it lies within reach of the slide
   bool outside_is_doubtful = false;  // that is much
-  int sure_cells = 0;                // from how many cells on a region is no noise, and how far they stand out
-  double sure_levels = 0;
 };
 
 /// Standard error of every cell of a surface, and what was filled (in the order of the two surveys; empty = nothing);

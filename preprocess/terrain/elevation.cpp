@@ -74,8 +74,7 @@ const char* name_of(VerticalUnit unit) {
     case VerticalUnit::metre: return "metre";
     case VerticalUnit::foot: return "foot";
     case VerticalUnit::us_survey_foot: return "us-survey-foot";
-    case VerticalUnit::declared:
-    case VerticalUnit::same: break;
+    case VerticalUnit::declared: break;
   }
   return "";
 }

@@ -64,12 +64,11 @@ void judge_lengths(const MapGrid& grid, const std::string& working_crs, Acceptan
       "working grid in {}: a metre on the ground is {:.4g} m along x and {:.4g} m along y on the map in its middle "
       "({:.4g} and {:.4g} m where that is worst); areas and volumes come out {:.4g} times as large",
       crs_name(grid.crs_wkt), middle.x, middle.y, worst.x, worst.y, middle.area);
-  const char* const mend =
-      working_crs == "utm"
-          ? "crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]): its corners "
-            "lie far outside one UTM zone"
-      : working_crs.empty() ? "set working_crs = \"utm\" in [preprocess], or name a CRS that keeps lengths there"
-                            : "name another working_crs in [preprocess], \"utm\" or one that keeps lengths there";
+  const char* const mend = working_crs == "utm" ? "crop the working grid (extent_m in [preprocess.grid]): its corners "
+                                                  "lie far outside one UTM zone"
+                           : working_crs.empty()
+                               ? "set working_crs = \"utm\" in [preprocess], or name a CRS that keeps lengths there"
+                               : "name another working_crs in [preprocess], \"utm\" or one that keeps lengths there";
   if (worst.falsity() > refused) {
     acceptance.judge({"false-lengths",
                       {words, fmt::format("lengths are off by {:.2g} %; 1 % is allowed", 100 * worst.falsity()),

@@ -83,16 +83,15 @@ void refuse_empty_cells(const Elevation& dem, const Raster& raster, const AlignR
   const bool too_large = largest_void > 0;
   const std::string beforehand = "(gdal_fillnodata.py " + dem.file.string() + " out.tif)";
   std::string mend = "Fill them beforehand " + beforehand;
-  if (!request.voids.fill) mend = "Fill them: fill = true in [preprocess.voids], or beforehand " + beforehand;
+  if (!(request.voids.fill > 0)) mend = "Fill them: fill_m2 = 1e5 in [preprocess.voids], or beforehand " + beforehand;
   if (too_large)
-    mend = fmt::format(
-        "Raise largest_m2 = {:g} in [preprocess.voids] (the largest void has {} m2), or fill it beforehand {}",
-        request.voids.largest, grouped(largest_void), beforehand);
+    mend =
+        fmt::format("Raise fill_m2 = {:g} in [preprocess.voids] (the largest void has {} m2), or fill it beforehand {}",
+                    request.voids.fill, grouped(largest_void), beforehand);
   if (edge == EdgeNodata::refuse) {
     mend +=
-        "; or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they reach its "
-        "edge, "
-        "leave them outside the domain: edge_nodata = \"outside\"";
+        "; or crop the working grid (extent_m in [preprocess.grid]), or, where they reach its edge, leave them outside "
+        "the domain: edge_nodata = \"outside\"";
   }
   refuse_cells(raster.grid, empty,
                {dem.file, "cells without elevation",
@@ -179,7 +178,7 @@ std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Align
   const MapGrid grid = working_grid(dems, request.grid);
   constexpr double bytes_per_cell = 100;  // surfaces, bed, releases, marks and errors of a cell, at least
   require_room(grid.columns, grid.rows, bytes_per_cell, "the working grid",
-               "Take a larger spacing_m, or a smaller part: west_m, south_m, east_m, north_m in [preprocess.grid]");
+               "Take a larger spacing_m, or a smaller part: extent_m in [preprocess.grid]");
   std::vector<Raster> rasters;
   for (const Elevation* dem : dems) {
     log_resampling(*dem, grid);
@@ -191,8 +190,8 @@ std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Align
   std::vector<double> largest_void(dems.size(), 0.0);
   for (std::size_t i = 0; i < dems.size(); ++i) {
     look_at_spikes(*dems[i], rasters[i], request.voids);
-    if (!request.voids.fill) continue;
-    Filled result = fill(*dems[i], rasters[i], request.voids.largest);
+    if (!(request.voids.fill > 0)) continue;
+    Filled result = fill(*dems[i], rasters[i], request.voids.fill);
     rasters[i] = result.raster;
     for (const VoidFill& v : result.voids) largest_void[i] = std::max(largest_void[i], v.filled ? 0.0 : v.area_m2);
     if (filled != nullptr) filled->push_back(std::move(result));

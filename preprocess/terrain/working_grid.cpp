@@ -18,8 +18,7 @@ namespace talus::preprocess {
 
 namespace {
 
-constexpr auto finer_mend =
-    "Take a larger spacing_m, or a smaller part: west_m, south_m, east_m, north_m in [preprocess.grid]";
+constexpr auto finer_mend = "Take a larger spacing_m, or a smaller part: extent_m in [preprocess.grid]";
 constexpr double lattice_tolerance = 1e-4;  // of a cell: coordinates in files carry their own rounding
 
 Extent intersection(const Extent& a, const Extent& b) {
@@ -62,8 +61,8 @@ MapGrid cells_inside(const Extent& extent, double west, double south, double cel
 
 Extent crop_of(const GridRequest& request) {
   const double far = std::numeric_limits<double>::max();
-  return {request.west.value_or(-far), request.south.value_or(-far), request.east.value_or(far),
-          request.north.value_or(far)};
+  const std::vector<double>& e = request.extent;
+  return e.empty() ? Extent{-far, -far, far, far} : Extent{e[0], e[1], e[2], e[3]};
 }
 
 Extent overlap_of(const std::vector<const Elevation*>& dems, const std::string& crs) {
@@ -114,12 +113,7 @@ std::array<Border, 4> borders(const MapGrid& grid, const std::vector<char>& empt
 
 GridRequest grid_request(const Options& options) {
   const GridOptions& g = options.grid;
-  return {.crs = options.working_crs,
-          .spacing = g.spacing,
-          .west = g.west,
-          .south = g.south,
-          .east = g.east,
-          .north = g.north};
+  return {.crs = options.working_crs, .spacing = g.spacing, .extent = g.extent};
 }
 
 MapGrid working_grid(const std::vector<const Elevation*>& dems, const GridRequest& request) {
@@ -133,9 +127,9 @@ MapGrid working_grid(const std::vector<const Elevation*>& dems, const GridReques
                                 : cells_inside(wanted, registered ? first.extent().west : 0,
                                                registered ? first.extent().south : 0, cell);
   if (grid.columns < 1 || grid.rows < 1) {
-    throw DataError(Fault{
-        fmt::format("the DEMs overlap in {}, which holds no cell of {:g} m inside the crop", text(overlap), cell),
-        "the working grid is empty", "Check west_m, south_m, east_m, north_m and spacing_m in [preprocess.grid]"});
+    throw DataError(
+        Fault{fmt::format("the DEMs overlap in {}, which holds no cell of {:g} m inside the crop", text(overlap), cell),
+              "the working grid is empty", "Check extent_m and spacing_m in [preprocess.grid]"});
   }
   grid.crs_wkt = crs;
   require_told_apart(grid, "the working grid");

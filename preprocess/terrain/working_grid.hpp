@@ -15,9 +15,9 @@ namespace talus::preprocess {
 
 /// The grid that is asked for. Nothing given: the cells of the first DEM, over all that the DEMs share.
 struct GridRequest {
-  std::string crs;                                         ///< name of a CRS in metres; "" = that of the first DEM
-  double spacing = 0;                                      ///< [m]; 0 = the cell of the first DEM
-  std::optional<double> west{}, south{}, east{}, north{};  ///< crop, in the working CRS [m]
+  std::string crs;               ///< name of a CRS in metres; "" = that of the first DEM
+  double spacing = 0;            ///< [m]; 0 = the cell of the first DEM
+  std::vector<double> extent{};  ///< crop: west, south, east, north in the working CRS [m]; empty: none
 };
 
 /// The grid that a recipe asks for: working_crs, and spacing and crop of [preprocess.grid].

@@ -78,7 +78,7 @@ a, w = t["slides"].attrs, t["slides/windows"][2]
 west, south, cell = a["west_m"] + w[0] * a["cell_m"], a["south_m"] + w[1] * a["cell_m"], a["cell_m"]
 text = open("recipe.toml").read().replace("[preprocess.grid]\n", "[[preprocess.release]]\n"
     "polygons = \"areas.geojson\"\nwhere = \"name = 'east'\"\nthickness_m = 4.0\n\n[preprocess.grid]\n"
-    f"west_m = {west}\nsouth_m = {south}\neast_m = {west + w[2] * cell}\nnorth_m = {south + w[3] * cell}\n")
+    f"extent_m = [{west}, {south}, {west + w[2] * cell}, {south + w[3] * cell}]\n")
 open("recipe.toml", "w").write(text)
 PYTHON
   expect_exit 0 "$bin/talus-preprocess" recipe.toml --out alone

@@ -56,8 +56,8 @@ test_all_nodata() {
 # refused_void FILE: the cell at column 11, row 5 has no elevation.
 refused_void() {
   refused 3 "talus-preprocess: $1: 1 cell without elevation, at x 500115.0, y 5000055.0 (nodata or NaN inside " \
-    "the working area). Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py $1 " \
-    "out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they " \
+    "the working area). Fill them: fill_m2 = 1e5 in [preprocess.voids], or beforehand (gdal_fillnodata.py $1 " \
+    "out.tif); or crop the working grid (extent_m in [preprocess.grid]), or, where they " \
     "reach its edge, leave them outside the domain: edge_nodata = \"outside\""
 }
 

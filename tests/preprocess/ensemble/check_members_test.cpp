@@ -41,9 +41,6 @@ TEST(check_members, keys_that_cannot_vary_are_refused_with_the_reason) {
   Options base;
   base.thickness_factor = 1.5;
   EXPECT_NE(fault_of_key(thickness_factor_key, base).find("thickness_factor = 1.5 for all members"), std::string::npos);
-  base.thickness_factor = 1;
-  base.bed.zones.emplace_back().largest_volume = 1e4;
-  EXPECT_NE(fault_of_key(thickness_factor_key, base).find("hold by volume"), std::string::npos);
 }
 
 TEST(check_members, a_value_that_a_key_does_not_take_names_member_value_and_range) {

@@ -151,8 +151,7 @@ TEST(elevation_errors, of_a_survey_are_as_it_finds_them) {
 TEST(elevation_errors, that_are_given_for_a_survey_and_wider_cells_have_less) {
   Scene scene;
   survey_twice(scene, 0.3);
-  scene.options.difference.before_sigma = 0.2;
-  scene.options.difference.after_sigma = 0.4;
+  scene.options.difference.sigma = std::hypot(0.2, 0.2);
   scene.options.coregistration.mode = Alignment::off;  // cells err independently
   ElevationErrorOptions o;
   o.from_survey = true;

@@ -204,8 +204,7 @@ TEST(laboratory, refuses_what_belongs_to_the_other_ways) {
   o.base_dem = "dem.tif";
   o.release.resize(1);
   o.working_crs = "EPSG:2056";
-  o.grid.east = 9;
-  o.grid.minimum_thickness = 1;
+  o.grid.extent = {0, 0, 9, 9};
   const std::string mend = "Leave it out, or give elevation models instead of [preprocess.laboratory]\n";
   EXPECT_EQ(
       faults_of(o),
@@ -213,10 +212,8 @@ TEST(laboratory, refuses_what_belongs_to_the_other_ways) {
           "[preprocess]: [[preprocess.release]] is given with a laboratory (they belong to different ways). " + mend +
           "[preprocess]: working_crs is given with a laboratory (a laboratory lies in local coordinates). Leave it "
           "out\n"
-          "[preprocess]: grid.west_m or its like is given with a laboratory (there is no elevation model to crop). Use "
-          "laboratory.west_m, south_m, columns and rows\n"
-          "[preprocess]: grid.minimum_thickness_m is given with a laboratory (boxes are filled by a regular lattice). "
-          "Leave it out\n");
+          "[preprocess]: grid.extent_m is given with a laboratory (there is no elevation model to crop). Use "
+          "laboratory.west_m, south_m, columns and rows\n");
 }
 
 TEST(laboratory, refuses_half_a_laboratory) {

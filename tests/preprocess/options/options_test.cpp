@@ -117,34 +117,8 @@ TEST(options, read_what_they_write) {
   options.after_dem = "/data/after.tif";
   options.grid.points_per_cell = {3, 2, 1};
   options.grid.edge_nodata = EdgeNodata::outside;
-  options.source.seed_x = 5;
-  options.source.seed_y = 7;
+  options.source.seed = {5, 7};
   test::expect_read_as_written(options);
-}
-
-TEST(options, units_of_one_model_come_back_and_wrong_ones_are_refused_by_word) {
-  Options options = before_and_after();
-  options.before_dem = "/data/before.tif";
-  options.after_dem = "/data/after.tif";
-  options.before_vertical_unit = VerticalUnit::us_survey_foot;
-  options.after_vertical_unit = VerticalUnit::declared;
-  test::expect_read_as_written(options);
-  const test::Scratch scratch;
-  const recipe::Recipe recipe(scratch.write("recipe.toml", "[preprocess]\nafter_vertical_unit = \"fot\"\n"));
-  const std::string fault = test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); });
-  EXPECT_NE(fault.find("after_vertical_unit = \"fot\" (no such choice). Did you mean \"foot\"?"), std::string::npos)
-      << fault;
-}
-
-TEST(options, units_of_models_that_are_not_there_are_refused) {
-  Options options = before_and_after();
-  options.after_vertical_unit = VerticalUnit::foot;
-  EXPECT_EQ(faults_of(options), "");
-  options.after_dem.clear();
-  options.sliding_surface = "sliding.tif";
-  EXPECT_EQ(faults_of(options),
-            "[preprocess]: after_vertical_unit is given without after_dem (there are no heights that it speaks of). "
-            "Leave it out, or use vertical_unit, which is for all elevation models\n");
 }
 
 TEST(options, tables_of_two_models_need_two_models) {

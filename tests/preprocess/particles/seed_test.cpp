@@ -42,14 +42,10 @@ TEST(seed, keeps_the_volume_whatever_the_points_per_cell) {
     for (int y = 1; y <= 4; ++y) {
       for (int z = 1; z <= 5; ++z) {
         for (const double layer_height : {0.37, 2.0, 9.7, 100.0}) {
-          Seeding s = seeding(x, y, z, layer_height);
-          for (const double minimum : {0.0, 1.3}) {
-            s.minimum_thickness = minimum;
-            const SeedPoints points = seed_points({release}, s);
-            ASSERT_NEAR(volume_of_points(points) / volume, 1, 1e-12)
-                << x << " " << y << " " << z << " " << layer_height;
-            ASSERT_EQ(points.size(), count_points({release}, s));
-          }
+          const Seeding s = seeding(x, y, z, layer_height);
+          const SeedPoints points = seed_points({release}, s);
+          ASSERT_NEAR(volume_of_points(points) / volume, 1, 1e-12) << x << " " << y << " " << z << " " << layer_height;
+          ASSERT_EQ(points.size(), count_points({release}, s));
         }
       }
     }
@@ -103,17 +99,6 @@ TEST(seed, lays_releases_in_one_cell_on_one_another) {
   const SeedPoints points = seed_points({{"A", uniform(4)}, {"B", uniform(2)}}, seeding(1, 1, 1, 4));
   EXPECT_EQ(points.height, (std::vector<double>{2, 5}));
   EXPECT_EQ(points.release, (std::vector<int>{0, 1}));
-}
-
-TEST(seed, gives_thin_columns_one_point) {
-  const Release release{
-      "A", test::raster_of(test::grid_of(2, 1, 10, 0, 0), [](double x, double) { return x < 10 ? 0.2 : 3.0; })};
-  Seeding s = seeding(2, 2, 2, 10);
-  s.minimum_thickness = 0.5;
-  const SeedPoints points = seed_points({release}, s);
-  ASSERT_EQ(points.size(), 5u);
-  EXPECT_DOUBLE_EQ(points.volume[0], 20);
-  EXPECT_DOUBLE_EQ(points.volume[1], 75);
 }
 
 TEST(seed, shifts_points_by_no_more_than_the_jitter_and_by_its_seed) {

@@ -73,8 +73,7 @@ TEST(outline_source, goes_through_depth_points_given_as_elevation_or_as_depth) {
                            value_at(before, x, y) - 12, value_at(before, 500110, 5100150) - 9));
   const Prepared by_elevation = scene.prepare();
   EXPECT_NEAR(value_at(before, x, y) - value_at(by_elevation.sliding_surface->surface, x, y), 12, 1e-5);
-  scene.points("500140 5100180 12\n500110 5100150 9\n");
-  scene.surface().depth_points_hold = PointValue::depth;
+  scene.points("x y depth\n500140 5100180 12\n500110 5100150 9\n");
   const Prepared by_depth = scene.prepare();
   for (std::size_t c = 0; c < before.values.size(); ++c)
     ASSERT_NEAR(by_depth.domain.terrain.values[c], by_elevation.domain.terrain.values[c], 1e-4);
@@ -179,8 +178,7 @@ TEST(outline_source, depth_points_in_degrees_are_refused_where_the_ground_has_no
 
 TEST(outline_source, refuses_depth_points_outside_and_above_the_ground_all_at_once) {
   OutlineScene scene;
-  scene.surface().depth_points_hold = PointValue::depth;
-  scene.points("500140 5100180 12\n500350 5100180 12\n500110 5100150 -3\n");
+  scene.points("x y depth\n500140 5100180 12\n500350 5100180 12\n500110 5100150 -3\n");
   const std::string fault = scene.data_fault();
   EXPECT_NE(fault.find("boreholes.csv: point 2 at x 500350.0, y 5100180.0 (it lies outside the outline, where nothing "
                        "slides). Leave it out, or draw the outline wider"),

@@ -83,11 +83,10 @@ TEST(refusal, polygon_without_lowering) {
 TEST(refusal, seed_point_outside_any_region) {
   Scene scene;
   scene.options.source.threshold = 0.5;
-  scene.options.source.seed_x = scene.grid.x(38);
-  scene.options.source.seed_y = scene.grid.y(1);
+  scene.options.source.seed = {scene.grid.x(38), scene.grid.y(1)};
   const std::string text = scene.recipe_fault();
   EXPECT_EQ(text.find("[preprocess.source]: seed point x 500385.0, y 5100015.0 (the lowering there is "), 0u) << text;
-  scene.options.source.seed_x = 0;
+  scene.options.source.seed[0] = 0;
   EXPECT_EQ(
       scene.recipe_fault(),
       "[preprocess.source]: seed point x 0.0, y 5100015.0 (it lies outside the working grid, x "

@@ -34,8 +34,8 @@ double xi_at(const Bed& bed, int column, int row) {
   return -1;
 }
 
-Bed laid(const BedRasters& options, double volume = 1e5, Bed bed = {}) {
-  lay_bed_zones(options, rising(), volume, bed);
+Bed laid(const BedRasters& options, Bed bed = {}) {
+  lay_bed_zones(options.zones, rising(), bed);
   return bed;
 }
 
@@ -50,23 +50,6 @@ TEST(BedZones, hold_between_their_elevations_and_leave_the_rest_to_the_recipe) {
   EXPECT_NEAR(xi_at(bed, 4, 3), 1500, 1e-9);
   EXPECT_TRUE(std::isnan(xi_at(bed, 5, 3)));
   EXPECT_TRUE(std::isnan(mu_at(bed, 10, 3)));
-}
-
-TEST(BedZones, are_chosen_by_volume_and_return_period) {
-  BedRasters o;
-  o.return_period_years = 100;
-  const auto row = [](double period, double smallest, double largest, double mu) {
-    return BedZone{.smallest_volume = smallest,
-                   .largest_volume = largest,
-                   .return_period_years = period,
-                   .friction_coefficient = mu};
-  };
-  o.zones = {row(100, 0, 25e3, 0.3), row(100, 25e3, 60e3, 0.25), row(300, 25e3, 60e3, 0.2)};
-  EXPECT_NEAR(mu_at(laid(o, 10e3), 3, 3), 0.3, 1e-12);
-  EXPECT_NEAR(mu_at(laid(o, 25e3), 3, 3), 0.25, 1e-12);
-  o.return_period_years = 300;
-  EXPECT_NEAR(mu_at(laid(o, 25e3), 3, 3), 0.2, 1e-12);
-  EXPECT_TRUE(laid(o, 60e3).empty()) << "no row holds";
 }
 
 TEST(BedZones, add_by_the_part_of_a_cell_that_polygons_cover_and_may_reach_beyond_the_ground) {
@@ -97,7 +80,7 @@ TEST(BedZones, lie_over_rasters_and_add_to_nothing_that_is_unknown) {
   o.zones.push_back({.added_coefficient = 0.1});
   const double angle = std::atan(0.2) * 180 / std::numbers::pi;
   const Bed bed =
-      laid(o, 1e5, {{"friction_angle_deg", test::raster_of(ground.grid, [&](double, double) { return angle; })}});
+      laid(o, {{"friction_angle_deg", test::raster_of(ground.grid, [&](double, double) { return angle; })}});
   EXPECT_NEAR(mu_at(bed, 4, 4), 0.3, 1e-12);
   EXPECT_NE(test::fault_of<DataError>([&] { laid(o); }).find("nothing to add to"), std::string::npos);
   o.zones.insert(o.zones.begin(), {.friction_coefficient = 0.05});
@@ -105,10 +88,9 @@ TEST(BedZones, lie_over_rasters_and_add_to_nothing_that_is_unknown) {
   EXPECT_NE(test::fault_of<DataError>([&] { laid(o); }).find("falls below 0"), std::string::npos);
 }
 
-TEST(BedZones, reach_the_domain_with_the_released_volume) {
+TEST(BedZones, reach_the_domain) {
   test::Scene scene;
-  scene.options.bed.zones.push_back({.largest_volume = 1, .friction_coefficient = 0.9});
-  scene.options.bed.zones.push_back({.smallest_volume = 1, .friction_coefficient = 0.4});
+  scene.options.bed.zones.push_back({.friction_coefficient = 0.4});
   const Domain d = scene.prepare().domain;
   ASSERT_EQ(d.bed.size(), 1u);
   EXPECT_NEAR(mu_at(d.bed, 5, 5), 0.4, 1e-12);
@@ -125,19 +107,8 @@ TEST(BedZones, say_what_they_need) {
   EXPECT_EQ(fault_with({.friction_coefficient = 0.2}), "");
   EXPECT_NE(fault_with({}).find("gives no number"), std::string::npos);
   EXPECT_NE(fault_with({.from = 5, .to = 4, .turbulence = 1}).find("from_m = 5 is not below"), std::string::npos);
-  EXPECT_NE(fault_with({.smallest_volume = 5, .largest_volume = 4, .turbulence = 1}).find("no volume"),
-            std::string::npos);
-  EXPECT_NE(fault_with({.return_period_years = 30, .turbulence = 1}).find("names no return period"), std::string::npos);
   EXPECT_NE(fault_with({.friction_coefficient = 0.1, .added_coefficient = 0.1}).find("both given"), std::string::npos);
-  o.bed.return_period_years = 100;
-  o.bed.zones = {{.polygons = "/forest.gpkg",
-                  .from = 900,
-                  .to = 1500,
-                  .smallest_volume = 1e3,
-                  .largest_volume = 1e4,
-                  .return_period_years = 30,
-                  .added_coefficient = 0.02,
-                  .turbulence = 400}};
+  o.bed.zones = {{.polygons = "/forest.gpkg", .from = 900, .to = 1500, .added_coefficient = 0.02, .turbulence = 400}};
   test::expect_read_as_written(o);
 }
 

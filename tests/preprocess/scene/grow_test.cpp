@@ -84,7 +84,7 @@ TEST(survey_memory, gives_what_a_comparison_gives_and_tells_other_surveys) {
     EXPECT_EQ(kept.releases[0].thickness.values, fresh.releases[0].thickness.values);
     EXPECT_EQ(kept.slide->sigma.values, fresh.slide->sigma.values);
   }
-  scene.options.difference.after_sigma = 0.5;  // another error: the kept survey is not taken
+  scene.options.difference.sigma = 0.5;  // another error: the kept survey is not taken
   EXPECT_EQ(read_scene(scene.options, &memory).survey->errors.typical(), 0.5);
 }
 

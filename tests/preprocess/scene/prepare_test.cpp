@@ -74,8 +74,7 @@ TEST(prepare, takes_the_region_that_holds_the_seed_point) {
   after.at(35, 3) -= 3;  // a small region beside the large one
   scene.rewrite_after(after);
   EXPECT_GT(scene.prepare().total.volume, 1e4);
-  scene.options.source.seed_x = scene.grid.x(35);
-  scene.options.source.seed_y = scene.grid.y(3);
+  scene.options.source.seed = {scene.grid.x(35), scene.grid.y(3)};
   EXPECT_NEAR(scene.prepare().total.volume, 300, 1e-6);
 }
 
@@ -191,12 +190,9 @@ TEST(prepare, finds_erodible_ground_where_it_went_down_outside_the_source) {
 TEST(prepare, brings_rasters_of_the_bed_onto_the_grid) {
   Scene scene;
   const MapGrid coarse = test::grid_of(25, 20, 20, scene.grid.west - 40, scene.grid.south - 40);
-  for (auto& [name, file] : scene.options.bed.files) {
-    if (name == "friction_angle_deg") {
-      file = test::write(scene.scratch, "angle.tif",
-                         test::raster_of(coarse, [&](double x, double) { return 10 + 0.02 * (x - coarse.west); }));
-    }
-  }
+  scene.options.bed.rasters.push_back(
+      {.file = test::write(scene.scratch, "angle.tif",
+                           test::raster_of(coarse, [&](double x, double) { return 10 + 0.02 * (x - coarse.west); }))});
   const Domain d = scene.prepare().domain;
   ASSERT_EQ(d.bed.size(), 1u);
   EXPECT_EQ(d.bed[0].first, "friction_angle_deg");

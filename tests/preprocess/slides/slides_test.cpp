@@ -98,10 +98,11 @@ TEST(Slides, are_what_a_recipe_of_one_of_them_makes) {
   EnsemblePlan plan = ManySlides::plan(many.recipe(std::string(by_depth) + "margin_m = 95.0\n"));
   const MapGrid window = cut(plan.table.slides->lattice, plan.table.slides->windows[1]);
   const auto alone = recipe::Recipe(many.scratch.write(
-      "alone.toml", fmt::format("[preprocess]\nbase_dem = \"model.tif\"\n[preprocess.grid]\nwest_m = {}\nsouth_m = {}\n"
-                                "east_m = {}\nnorth_m = {}\n[[preprocess.release]]\npolygons = \"areas.geojson\"\n"
-                                "where = \"name = 'b'\"\nthickness_m = 3.0\n",
-                                window.west, window.south, window.east(), window.north())));
+      "alone.toml",
+      fmt::format("[preprocess]\nbase_dem = \"model.tif\"\n[preprocess.grid]\nextent_m = [{}, {}, {}, {}]\n"
+                  "[[preprocess.release]]\npolygons = \"areas.geojson\"\n"
+                  "where = \"name = 'b'\"\nthickness_m = 3.0\n",
+                  window.west, window.south, window.east(), window.north())));
   const Domain one = prepare(*plan.ground[1], Points::seeded).domain,
                other = prepare(alone.read<Options>("preprocess"), Points::seeded).domain;
   EXPECT_EQ(one.terrain.values, other.terrain.values);
@@ -188,9 +189,9 @@ TEST(Slides, take_no_keys_that_are_theirs_and_no_value_twice) {
   const std::string grid = ManySlides::fault(many.recipe(
       std::string(by_depth) + "[[slides.set]]\nkey = \"preprocess.grid.spacing_m\"\nattribute = \"depth\"\n"));
   EXPECT_NE(grid.find("preprocess.grid.spacing_m cannot vary"), std::string::npos) << grid;
-  const std::string besides =
-      ManySlides::fault(many.recipe(by_depth, "base_dem = \"model.tif\"\ngrid.west_m = 500000.0"));
-  EXPECT_NE(besides.find("west_m beside [slides]"), std::string::npos) << besides;
+  const std::string besides = ManySlides::fault(
+      many.recipe(by_depth, "base_dem = \"model.tif\"\ngrid.extent_m = [500000.0, 5e6, 500100.0, 5.1e6]"));
+  EXPECT_NE(besides.find("extent_m beside [slides]"), std::string::npos) << besides;
   const std::string places = ManySlides::fault(
       many.recipe(by_depth, "base_dem = \"model.tif\"\nplace = [{name = \"set\", file = \"lines.gpkg\"}]"));
   EXPECT_NE(places.find("place beside [slides]"), std::string::npos) << places;

@@ -5,6 +5,8 @@
 #include "common/gis/polygons.hpp"
 #include "common/gis/read_raster.hpp"
 
+#include <gdal_priv.h>
+
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -36,7 +38,7 @@ Options raw_options(const Scratch& scratch, unsigned seed) {
   options.before_dem = test::write(scratch, "before.tif", raw.rasters[0].second);
   options.after_dem = test::write(scratch, "after.tif", raw.rasters[1].second);
   options.coregistration.mode = Alignment::apply;
-  options.voids.fill = true;
+  options.voids.fill = 1e5;
   return options;
 }
 
@@ -75,8 +77,7 @@ TEST(survey, warns_and_leaves_the_later_model_where_it_is_unless_told) {
   EXPECT_FALSE(survey.after.placement.given());
   EXPECT_TRUE(survey.fit.known);
   options.coregistration.mode = Alignment::off;
-  options.difference.before_sigma = 0.3;
-  options.difference.after_sigma = 0.4;
+  options.difference.sigma = 0.5;
   const Survey given = survey_of(options);
   EXPECT_FALSE(given.fit.known);
   EXPECT_DOUBLE_EQ(given.errors.sigma(0.7), 0.5);
@@ -99,7 +100,7 @@ TEST(survey, states_no_error_where_the_later_model_was_made_from_the_earlier_one
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(folder / "survey.json"));
   EXPECT_EQ(json.at("error").at("known"), false);
   EXPECT_TRUE(json.at("source").at("error_m3").is_null());
-  scene.options.difference.after_sigma = 0.2;
+  scene.options.difference.sigma = 0.2;
   EXPECT_GT(scene.prepare().slide->volumes[0].volume.error, 0) << "given, it is known";
 }
 
@@ -160,9 +161,7 @@ TEST(survey, says_so_when_one_model_looks_like_feet) {
   scene.rewrite_after(feet);
   const std::string fault = scene.data_fault();
   EXPECT_NE(fault.find("look like feet"), std::string::npos) << fault;
-  EXPECT_NE(fault.find("after_vertical_unit = \"foot\""), std::string::npos) << fault;
-  scene.options.after_vertical_unit = VerticalUnit::foot;
-  EXPECT_EQ(scene.data_fault(), "") << "what it says helps";
+  EXPECT_NE(fault.find("Declare it in after_dem: gdal_edit.py -units foot"), std::string::npos) << fault;
 }
 
 /// Heights of a scene in another unit than the file says, which is none.
@@ -174,23 +173,23 @@ void rewrite_in(test::Scene& scene, double before_metres, double after_metres) {
   scene.rewrite_after(after);
 }
 
+/// Writes the unit of its heights into a raster, as gdal_edit.py -units does.
+void declare_unit(const std::filesystem::path& raster, const char* unit) {
+  const GDALDatasetUniquePtr file(GDALDataset::Open(raster.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+  file->GetRasterBand(1)->SetUnitType(unit);
+}
+
 TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
   constexpr double ft = 0.3048, us_ft = 1200.0 / 3937.0;
   struct Case {
     double before, after;
-    VerticalUnit all, only_before, only_after;
+    const char *declared_before, *declared_after;
   };
-  using enum VerticalUnit;
-  for (const Case& c : {Case{1, ft, declared, same, foot},
-                        {us_ft, 1, declared, us_survey_foot, same},
-                        {ft, 1, foot, same, metre},
-                        {ft, 1, foot, same, declared},
-                        {us_ft, ft, foot, us_survey_foot, same}}) {
+  for (const Case& c : {Case{1, ft, "", "foot"}, {us_ft, 1, "us-survey-foot", ""}, {us_ft, ft, "us-ft", "ft"}}) {
     test::Scene scene;
     rewrite_in(scene, c.before, c.after);
-    scene.options.vertical_unit = c.all;
-    scene.options.before_vertical_unit = c.only_before;
-    scene.options.after_vertical_unit = c.only_after;
+    declare_unit(scene.options.before_dem, c.declared_before);
+    declare_unit(scene.options.after_dem, c.declared_after);
     const Prepared prepared = scene.prepare();
     const auto& difference = prepared.slide->change;
     for (std::size_t i = 0; i < difference.values.size(); ++i) {
@@ -205,12 +204,9 @@ TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
 
 /// Two cells: one beyond its level, one not.
 TEST(difference, believes_what_lies_beyond_the_level_of_detection) {
-  const Detection probabilistic{Threshold::probabilistic, 0.2, 1.96},
-      propagated{Threshold::propagated_error, 0.2, 1.96}, minimum{Threshold::minimum_level, 0.2, 1.96};
-  EXPECT_DOUBLE_EQ(probabilistic.level(0.5), 0.98);
-  EXPECT_DOUBLE_EQ(probabilistic.level(0.05), 0.2);
-  EXPECT_DOUBLE_EQ(propagated.level(0.5), 0.5);
-  EXPECT_DOUBLE_EQ(minimum.level(0.5), 0.2);
+  const Detection detection{0.2, 1.96};
+  EXPECT_DOUBLE_EQ(detection.level(0.5), 0.98);
+  EXPECT_DOUBLE_EQ(detection.level(0.05), 0.2);
 }
 
 TEST(difference, budget_adds_up_with_errors_of_independent_cells) {

@@ -74,8 +74,7 @@ TEST(align, does_not_average_over_a_void) {
 
 TEST(align, crops_to_whole_cells_inside_the_given_edges) {
   Scene scene;
-  scene.options.grid.west = scene.grid.west + 55;
-  scene.options.grid.north = scene.grid.south + 248;
+  scene.options.grid.extent = {scene.grid.west + 55, scene.grid.south, scene.grid.east(), scene.grid.south + 248};
   const MapGrid grid = scene.prepare().domain.grid;
   EXPECT_DOUBLE_EQ(grid.west, scene.grid.west + 60);
   EXPECT_DOUBLE_EQ(grid.north(), scene.grid.south + 240);

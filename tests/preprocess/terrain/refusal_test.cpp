@@ -67,15 +67,14 @@ TEST(refusal, huge_block_of_nodata) {
   for (int r = 100; r < 1400; ++r)
     for (int c = 100; c < 1400; ++c) before.at(c, r) = std::nan("");
   scene.rewrite_after(before);
-  scene.options.voids.fill = true;
+  scene.options.voids.fill = 1e5;
   const std::string file = scene.path("after.tif"), text = scene.data_fault();
   EXPECT_EQ(
-      text.find(
-          file +
-          ": 1,690,000 cells without elevation, the first at x 501005.0, y 5113995.0 (nodata or NaN inside the "
-          "working area, in voids too large to fill). Raise largest_m2 = 100000 in [preprocess.voids] (the largest "
-          "void has 169,000,000 m2), or fill it beforehand (gdal_fillnodata.py " +
-          file + " out.tif); or crop the working grid"),
+      text.find(file +
+                ": 1,690,000 cells without elevation, the first at x 501005.0, y 5113995.0 (nodata or NaN inside the "
+                "working area, in voids too large to fill). Raise fill_m2 = 100000 in [preprocess.voids] (the largest "
+                "void has 169,000,000 m2), or fill it beforehand (gdal_fillnodata.py " +
+                file + " out.tif); or crop the working grid"),
       0u)
       << text;
 }
@@ -122,16 +121,16 @@ TEST(refusal, nodata_inside_the_working_area) {
       scene.data_fault(),
       file +
           ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN inside the working area). "
-          "Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py " +
+          "Fill them: fill_m2 = 1e5 in [preprocess.voids], or beforehand (gdal_fillnodata.py " +
           file +
-          " out.tif); or crop the working grid (west_m, south_m, east_m, north_m in [preprocess.grid]), or, where they "
+          " out.tif); or crop the working grid (extent_m in [preprocess.grid]), or, where they "
           "reach its edge, leave them outside the domain: edge_nodata = \"outside\"");
   scene.options.grid.edge_nodata = EdgeNodata::outside;
   EXPECT_EQ(
       scene.data_fault(),
       file +
           ": 3 cells without elevation, the first at x 500205.0, y 5100075.0 (nodata or NaN inside the working area). "
-          "Fill them: fill = true in [preprocess.voids], or beforehand (gdal_fillnodata.py " +
+          "Fill them: fill_m2 = 1e5 in [preprocess.voids], or beforehand (gdal_fillnodata.py " +
           file + " out.tif)");
 }
 
@@ -140,7 +139,7 @@ TEST(refusal, voids_are_filled_on_request_up_to_a_size) {
   Raster after = scene.after;
   for (int c = 20; c < 24; ++c) after.at(c, 7) = after.at(c, 8) = std::nan("");
   scene.rewrite_after(after);
-  scene.options.voids.fill = true;
+  scene.options.voids.fill = 1e5;
   testing::internal::CaptureStderr();
   const Prepared prepared = scene.prepare();
   const std::string log = testing::internal::GetCapturedStderr();
@@ -150,14 +149,14 @@ TEST(refusal, voids_are_filled_on_request_up_to_a_size) {
       std::string::npos)
       << log;
   EXPECT_GT(prepared.total.volume, 0);
-  scene.options.voids.largest = 700;
+  scene.options.voids.fill = 700;
   const std::string file = scene.path("after.tif");
   const std::string text = scene.data_fault();
   EXPECT_EQ(
       text.find(
           file +
           ": 8 cells without elevation, the first at x 500205.0, y 5100085.0 (nodata or NaN inside the working "
-          "area, in voids too large to fill). Raise largest_m2 = 700 in [preprocess.voids] (the largest void has 800 "
+          "area, in voids too large to fill). Raise fill_m2 = 700 in [preprocess.voids] (the largest void has 800 "
           "m2), or "),
       0u)
       << text;
@@ -176,21 +175,21 @@ TEST(refusal, spikes_are_reported_and_removed_on_request) {
             std::string::npos)
       << log;
   scene.options.voids.spikes = Spikes::remove;
-  EXPECT_EQ(
-      scene.recipe_fault(),
-      "[preprocess]: voids.spikes = \"remove\" without voids.fill (what is removed is filled like a void). Set fill = "
-      "true in [preprocess.voids], or spikes = \"report\"");
-  scene.options.voids.fill = true;
+  EXPECT_EQ(scene.recipe_fault(),
+            "[preprocess]: voids.spikes = \"remove\" without voids.fill_m2 (what is removed is filled like a void). "
+            "Set fill_m2 = "
+            "1e5 in [preprocess.voids], or spikes = \"report\"");
+  scene.options.voids.fill = 1e5;
   EXPECT_NEAR(scene.prepare().domain.before.at(30, 20), scene.before.at(30, 20), 0.5);
 }
 
 TEST(refusal, crop_that_leaves_nothing) {
   Scene scene;
-  scene.options.grid.west = 600000;
+  scene.options.grid.extent = {600000, 5100000, 600100, 5100100};
   EXPECT_EQ(
       scene.data_fault(),
       "the DEMs overlap in x 500000..500400, y 5100000..5100300, which holds no cell of 10 m inside the crop (the "
-      "working grid is empty). Check west_m, south_m, east_m, north_m and spacing_m in [preprocess.grid]");
+      "working grid is empty). Check extent_m and spacing_m in [preprocess.grid]");
 }
 
 }  // namespace
