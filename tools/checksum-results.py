@@ -94,7 +94,6 @@ VARIANTS = {
     "stick": ("", '[solve.base]\nlaw = "stick"\n', {}),
     "base-cohesion-pore": ("", "[solve.base]\ncohesion_Pa = 300.0\npore_pressure_ratio = 0.4\n", {}),
     "stiffness-auto": ("", '[solve.material]\nyoungs_modulus_Pa = 1e9\nstiffness = "auto"\n', {}),
-    "stiffness-check": ("end_time_s = 0.5", "[solve.material]\nstiffness_check = true\n", {}),
     "walls": (
         "",
         '[[solve.wall]]\naxis = "x"\nposition_m = 10.0\nkind = "frictional"\nfriction_angle_deg = 25.0\n'
@@ -143,7 +142,6 @@ VARIANTS = {
     "newmark-samosat": ('integrator = "newmark"', '[solve.base]\nlaw = "samosat"\n', {}),
     "newmark-musl-flip": ('integrator = "newmark"\nstress_update = "musl"\ntransfer = "flip"\ndamping = 0.05', "", {}),
     "newmark-cholesky": ('integrator = "newmark"', '[solve.implicit]\nlinear_solver = "cholesky"\n', {}),
-    "newmark-fixed-forcing": ('integrator = "newmark"', '[solve.implicit]\nforcing = "fixed"\n', {}),
     "newmark-b-bar": (
         'integrator = "newmark"',
         "[solve.implicit]\nb_bar = true\n[solve.material]\n" "poisson_ratio = 0.45\n",

@@ -9,11 +9,11 @@ Walls<Real> walls_at(const std::vector<PlaneWall>& walls, double time, const Wal
   Walls<Real> standing;
   for (const PlaneWall& w : walls) {
     const double now = time * (1 + 1e-12);  // events a rounding apart are one
-    if (now < w.from || now >= w.to) continue;
+    if (now >= w.to) continue;
     Wall<Real>& wall = standing.list[standing.count++];
     wall.axis = w.axis;
     wall.side = w.side;
-    const double position = w.position + w.speed * (time - w.from);
+    const double position = w.position + w.speed * time;
     wall.position = static_cast<Real>((position - frame.origin[w.axis]) / frame.cell[w.axis]);
     wall.kind = w.kind;
     wall.friction = static_cast<Real>(w.friction);

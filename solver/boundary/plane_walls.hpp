@@ -9,15 +9,15 @@
 
 namespace talus::solver {
 
-/// A plane wall, present from one time to another.
+/// A plane wall, present until a time.
 struct PlaneWall {
   int axis = 0;         ///< 0 x, 1 y, 2 z
   int side = 1;         ///< +1: the material is on the side of growing coordinates, -1: of falling ones
-  double position = 0;  ///< map coordinate, or elevation, at time `from` [m]
+  double position = 0;  ///< map coordinate, or elevation, at the start [m]
   WallKind kind = WallKind::roller;
-  double friction = 0;         ///< coefficient of a frictional wall [-]
-  double speed = 0;            ///< along the axis [m/s]
-  double from = 0, to = 1e30;  ///< the times from and to which it is there [s]
+  double friction = 0;  ///< coefficient of a frictional wall [-]
+  double speed = 0;     ///< along the axis [m/s]
+  double to = 1e30;     ///< the time until which it is there [s]
 };
 
 /// The map coordinates of node (0, 0, 0) and the spacing along each axis [m].

@@ -182,8 +182,6 @@ void Variations::integrator() {
   (base_.integrator == Integrator::automatic ? one.options.flow : one.options.integrator) = other;
   if (!is_explicit) {
     one.options.cfl = std::min(base_.cfl, default_cfl);  // longer ones need not be stable
-    if (base_.kappa != default_kappa) one.run.values.push_back(set_to("solve.kappa", default_kappa));
-    one.options.kappa = default_kappa;
   }
   one.run.values.emplace_back(is_explicit ? "solve.integrator=column-implicit" : "solve.integrator=explicit");
   one.run.values.push_back(set_to("solve.cfl", one.options.cfl));

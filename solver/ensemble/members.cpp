@@ -19,12 +19,10 @@ namespace {
 
 /// Keys by which the stiffness and the steps are settled.
 constexpr const char* settling_keys[] = {"solve.material.stiffness",
-                                         "solve.material.stiffness_strain",
                                          "solve.material.youngs_modulus_Pa",
                                          "solve.accuracy",
                                          "solve.integrator",
                                          "solve.cfl",
-                                         "solve.kappa",
                                          "solve.preset"};
 
 bool varies_settling(const MemberTable& table) {

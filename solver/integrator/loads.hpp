@@ -11,9 +11,9 @@ namespace talus::solver {
 
 /// A force on the particles that start inside a box.
 struct Load {
-  Vec3<double> force;       ///< on all of them together [N]
-  double ramp = 0;          ///< time over which it grows to its full size [s]
-  double from = 0, to = 0;  ///< it pulls from this time to that one [s]
+  Vec3<double> force;  ///< on all of them together [N]
+  double ramp = 0;     ///< time over which it grows to its full size [s]
+  double to = 0;       ///< it pulls until this time [s]
 };
 
 /// The force per volume of every load at a time [N/m3], in a step that began at `begin` [s]: what begins or ends at the

@@ -18,7 +18,7 @@ void refuse_step(const Clock& clock, double step, const StepStats& stats, bool d
                    "the forces, {} Newton and {} linear iterations)",
                    clock.step + 1, clock.time, step, stats.residual, stats.newton, stats.linear),
        dynamic ? "the step is too long, or the mass tears apart" : "there may be no equilibrium to find",
-       dynamic ? "Lower [solve.implicit] step_s, or allow more step_cuts"
+       dynamic ? "Lower [solve.implicit] step_s"
                : "Hold the body with walls, ramp the load more slowly, or use integrator = \"newmark\""});
 }
 

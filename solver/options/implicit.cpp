@@ -30,9 +30,6 @@ void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   describe_newton(v);
   describe_linear(v, all);
   const StepAbilities steps = abilities_of(all.asked_integrator());
-  v.integer("step_cuts", step_cuts, recipe::Range{0, 30}, "halvings of a step before the run gives up");
-  v.number("apex", apex, recipe::not_negative,
-           "drucker-prager: pressure over which the tip of the cone is rounded, in weights of a cell");
   v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
   v.needs(
       !b_bar || !steps.solve_systems || pressure_by_volume(all),
@@ -41,9 +38,6 @@ void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.needs(!b_bar || steps.average_volume, {"[solve.implicit] b_bar = true has no effect on explicit steps",
                                            "only implicit steps average the volume change",
                                            "Leave it out, or take integrator = \"newmark\" or \"quasi-static\""});
-  v.number(
-      "filler", filler, recipe::Range{0, 1, false, true},
-      "quasi-static: springs against each step's displacement of nearly empty nodes, stiffness over a full cell's");
 }
 
 void ImplicitOptions::describe_newton(recipe::Visitor& v) {
@@ -52,8 +46,6 @@ void ImplicitOptions::describe_newton(recipe::Visitor& v) {
                     "newmark: alpha (0.25: trapezoid); left out: 0.5 for what flows, else 0.25");
   v.optional_number("newmark_beta", newmark_beta, recipe::fraction,
                     "newmark: beta (0.5: trapezoid; more damps); left out: 1 for what flows, else 0.5");
-  v.integer("newton_iterations", newton_iterations, recipe::Range{1, 1000},
-            "most Newton iterations a step; 1: one linear solve");
   v.optional_number(
       "newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true},
       "unbalanced force over the forces' size; left out: 1e-2 for newmark's steps of what flows, else 1e-6");
@@ -66,11 +58,8 @@ void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& al
               all.obstacles.empty(),
           {"[[solve.obstacle]] does not go with [solve.implicit] linear_solver = \"cholesky\"",
            "contact between nodes is not in the assembled matrix", "Take linear_solver = \"pcg\""});
-  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true}, "pcg: residual over right-hand side");
-  recipe::choice(v, "forcing", forcing, {{"eisenstat-walker", Forcing::eisenstat_walker}, {"fixed", Forcing::fixed}},
-                 "eisenstat-walker: no more exact than Newton's iteration can use, linear_tolerance at the finest; "
-                 "fixed: always linear_tolerance");
-  v.integer("linear_iterations", linear_iterations, recipe::Range{1, 1e9}, "pcg: most iterations");
+  v.number("linear_tolerance", linear_tolerance, recipe::Range{0, 1, true, true},
+           "pcg: residual over right-hand side at the finest; coarser where Newton's iteration cannot use it");
 }
 
 NewtonScheme scheme_of(const SolveOptions& o) {

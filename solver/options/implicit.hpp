@@ -16,16 +16,16 @@ struct SolveOptions;
 struct ImplicitOptions {
   double step = 0.01;                                 ///< [s]
   std::optional<double> newmark_alpha, newmark_beta;  ///< none: those of scheme_of()
-  int newton_iterations = 30;                         ///< 1: the single linear solve of the reference paper
   std::optional<double> newton_tolerance;  ///< unbalanced force over the forces' size; none: that of scheme_of()
   LinearSolver linear_solver = LinearSolver::pcg;
   double linear_tolerance = 1e-8;
+  bool b_bar = false;  ///< element means of the volume change
+
+  // Fixed numbers without a key; with_preset() and tests take others.
+  int newton_iterations = 30;  ///< 1: the single linear solve of the reference paper
   Forcing forcing = Forcing::eisenstat_walker;
   int linear_iterations = 5000;
-  int step_cuts = 8;     ///< halvings before giving up
-  double apex = 0.1;     ///< rounding of the cone's tip, in weights of a cell
-  bool b_bar = false;    ///< element means of the volume change
-  double filler = 1e-3;  ///< stiffness of springs that hold nearly empty nodes in statics, over that of a full cell
+  int step_cuts = 8;  ///< halvings before giving up
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
 

@@ -68,12 +68,6 @@ void MaterialOptions::describe(recipe::Visitor& v, const std::string& table) {
            "stiffness; sets the step size, see docs/how-to/steps.md");
   recipe::choice(v, "stiffness", stiffness, {{"as-given", StiffnessKind::as_given}, {"auto", StiffnessKind::automatic}},
                  "auto: the lowest modulus up to that one which leaves the flow unchanged");
-  v.number("stiffness_strain", stiffness_strain, recipe::Range{0, 0.5, true, false},
-           "stiffness = \"auto\": strain that the dynamic pressure of the fastest flow may cause");
-  v.needs(stiffness == StiffnessKind::automatic || stiffness_strain == default_stiffness_strain,
-          {table + " stiffness_strain has no effect", "it is what stiffness = \"auto\" goes by",
-           "Give stiffness = \"auto\", or leave it out"});
-  v.flag("stiffness_check", stiffness_check, "run again with twice the modulus and say how far the deposit moves");
   v.number("poisson_ratio", poisson_ratio, recipe::Range{-1, 0.5, true, true}, "Poisson's ratio");
   OptionsOfLaws::describe(v, {.name = table, .chosen = name()});
 }
@@ -83,9 +77,8 @@ void PartOptions::describe(recipe::Visitor& v) {
          "name of the release (of talus-preprocess) that is of this material; the keys below have their own defaults");
   const std::string table = fmt::format("[[solve.part]] release = \"{}\"", release);
   material.describe(v, table);
-  v.needs(
-      material.stiffness == StiffnessKind::as_given && !material.stiffness_check,
-      {table + " gives stiffness or stiffness_check", "they are the whole scene's", "Give them in [solve.material]"});
+  v.needs(material.stiffness == StiffnessKind::as_given,
+          {table + " gives stiffness", "it is the whole scene's", "Give it in [solve.material]"});
 }
 
 bool MassOptions::any_material(const std::function<bool(const MaterialOptions&)>& is) const {

@@ -27,7 +27,6 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   double youngs_modulus = 1e7;  ///< [Pa]
   StiffnessKind stiffness = StiffnessKind::as_given;
   double stiffness_strain = default_stiffness_strain;  ///< that the dynamic pressure may cause, where it is chosen [-]
-  bool stiffness_check = false;                        ///< run again, twice as stiff
   double poisson_ratio = 0.25;                         ///< [-]
 
   /// The method calls visit(Law{}, options of that law) for the chosen law, and returns what that returns.

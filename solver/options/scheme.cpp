@@ -23,8 +23,6 @@ void SchemeOptions::describe(recipe::Visitor& v) {
   v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");
   v.number("cfl", cfl, recipe::Range{0, 1.5, true, false},
            "step size over the CFL step; 0.8 at most, with column-implicit steps 1.5");
-  v.number("kappa", kappa, recipe::Range{0.25, 1},
-           "column-implicit: inertia of springs between layers; 0.25 is the least that is stable");
   v.number("largest_step_s", largest_step, recipe::positive, "upper bound of the step size");
 }
 

@@ -18,8 +18,8 @@ enum class Transfer { apic, flip };
 /// The time at which stress is updated: after the nodes' step (USL), or after velocity went back to them (MUSL).
 enum class StressUpdate { last, modified };  ///< USL, MUSL
 
-/// The share of a step's change of velocity that springs between layers feel (T6a), unless the recipe says otherwise.
-inline constexpr double default_kappa = 0.3;
+/// The share of a step's change of velocity that springs between layers feel (T6a); below 0.25 steps are unstable.
+inline constexpr double column_kappa = 0.3;
 
 /// The step over the CFL step, unless the recipe says otherwise.
 inline constexpr double default_cfl = 0.5;
@@ -34,8 +34,7 @@ struct SchemeOptions {
   StressUpdate stress_update = StressUpdate::last;
   double damping = 0;  ///< Cundall's local factor
   double cfl = default_cfl;
-  double kappa = default_kappa;  ///< column-implicit: (T6a)
-  double largest_step = 1;       ///< [s]
+  double largest_step = 1;  ///< [s]
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

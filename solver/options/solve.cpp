@@ -30,9 +30,6 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
 /// This function declares what column-implicit steps need, and what needs them.
 void need_columns(recipe::Visitor& v, const SolveOptions& o) {
   const bool by_columns = abilities_of(o.asked_integrator()).solve_columns;
-  v.needs(by_columns || o.integrator == Integrator::automatic || o.kappa == default_kappa,
-          {"[solve] kappa has no effect", "it belongs to integrator = \"column-implicit\"",
-           "Leave it out, or take that integrator"});
   v.needs(by_columns || o.cfl <= most_explicit_cfl,
           {fmt::format("[solve] cfl = {:g} is too large for this integrator", o.cfl),
            "points that have a cell to themselves would be thrown off", "Take 0.8 at most"});
@@ -48,9 +45,6 @@ void need_columns(recipe::Visitor& v, const SolveOptions& o) {
 void need_accuracy(recipe::Visitor& v, const SolveOptions& o) {
   const std::string why = "it follows from accuracy", mend = "Leave it out, or leave accuracy out";
   v.needs(!o.accuracy || o.cfl == default_cfl, {"[solve] cfl beside accuracy", why, mend});
-  v.needs(!o.accuracy || o.kappa == default_kappa, {"[solve] kappa beside accuracy", why, mend});
-  v.needs(!o.accuracy || o.material.stiffness_strain == default_stiffness_strain,
-          {"[solve.material] stiffness_strain beside [solve] accuracy", why, mend});
 }
 
 /// This function declares what a preset sets, and is not given otherwise beside it. The defaults of its keys cannot be

@@ -69,16 +69,12 @@ void StabilityOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.flag("factor_of_safety", factor_of_safety,
          "find the factor by which strength can be divided before no equilibrium is left, instead of a run in time");
   v.number("tolerance", tolerance, recipe::Range{1e-4, 0.2}, "width of the bracket over its lower end");
-  v.number("largest_factor", largest_factor, recipe::Range{1, 1000}, "factor beyond which the search ends");
-  v.number("critical_share", critical_share, recipe::Range{0, 1, true, true},
-           "way over that of the mass that fails, from which on a point belongs to it");
   const BeyondSearch beyond = factor_of_safety ? beyond_search(all) : BeyondSearch{};
   v.needs(beyond.what.empty(),
           {"[solve.stability] factor_of_safety = true does not go with " + beyond.what, beyond.why, beyond.mend});
   const StabilityOptions usual;
-  v.needs(factor_of_safety || (tolerance == usual.tolerance && largest_factor == usual.largest_factor &&
-                               critical_share == usual.critical_share),
-          {"[solve.stability] is given without factor_of_safety = true", "its other keys have no effect",
+  v.needs(factor_of_safety || tolerance == usual.tolerance,
+          {"[solve.stability] is given without factor_of_safety = true", "tolerance has no effect",
            "Give factor_of_safety = true, or leave the table out"});
 }
 

@@ -13,8 +13,7 @@ struct SolveOptions;
 struct StabilityOptions {
   bool factor_of_safety = false;  ///< find it, instead of a run in time
   double tolerance = 0.005;       ///< width of the bracket over its lower end [-]
-  double largest_factor = 20;     ///< factor beyond which the search ends [-]
-  double critical_share = 0.5;    ///< of the way of the mass that fails, from which on a point belongs to it [-]
+  double largest_factor = 20;     ///< factor beyond which the search ends [-]; no key
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
 };

@@ -16,8 +16,7 @@ void WallOptions::describe(recipe::Visitor& v) {
                  "roller: no motion along the axis; fixed: none at all; frictional: one-sided, with friction");
   v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true}, "frictional: friction angle");
   v.number("speed_m_s", speed, recipe::any, "velocity of the wall along its axis");
-  v.number("from_s", from, recipe::not_negative, "the wall is there from this time");
-  v.number("to_s", to, recipe::not_negative, "and goes at this time (a gate)");
+  v.number("to_s", to, recipe::not_negative, "the wall goes at this time (a gate)");
 }
 
 void need_few(recipe::Visitor& v, const std::vector<WallOptions>& walls) {

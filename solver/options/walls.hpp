@@ -21,9 +21,9 @@ struct WallOptions {
   double position = 0;             ///< map coordinate, or elevation [m]
   Side material_is = Side::above;  ///< where the material is
   WallKind kind = WallKind::roller;
-  double friction_angle = 0;   ///< [deg]
-  double speed = 0;            ///< along the axis [m/s]
-  double from = 0, to = 1e30;  ///< [s]
+  double friction_angle = 0;  ///< [deg]
+  double speed = 0;           ///< along the axis [m/s]
+  double to = 1e30;           ///< it stands until then [s]
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

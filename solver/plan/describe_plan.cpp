@@ -20,7 +20,7 @@ namespace {
 std::string flow_words(const SolveOptions& o) {
   if (o.flow_integrator() == Integrator::explicit_) return fmt::format("explicit, {:g} of the CFL step", o.cfl);
   return fmt::format("explicit, inertia implicit along columns (kappa = {:g}), {:g} of the CFL step of the cells",
-                     o.kappa, o.cfl);
+                     column_kappa, o.cfl);
 }
 
 std::string integrator_words(const SolveOptions& o) {

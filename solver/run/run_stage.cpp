@@ -17,7 +17,6 @@
 #include "solver/run/recorders/stretch.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
-#include "solver/run/stiffness_check.hpp"
 
 namespace talus::solver {
 namespace {
@@ -129,7 +128,6 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const std::share
                        summary.steps, summary.wall_time));
   if (!flags.is_varied && accepts_torn_body(options)) warn_of_unmet({torn_body}, summary.provenance);
   if (flags.profile) report_profile(summary, device, context.out);
-  if (options.material.stiffness_check) check_stiffness(*plan, device, context, paths.run);
   context.results.push_back(paths.run);
   return facts_of(summary);
 }

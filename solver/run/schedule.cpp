@@ -21,8 +21,8 @@ Schedule::Schedule(const SolveOptions& options, std::vector<double> pulses)
       checkpoint_interval_(options.checkpoint_interval),
       end_time_(options.end_time),
       pulses_(std::move(pulses)) {
-  for (const WallOptions& wall : options.walls) changes_.insert(changes_.end(), {wall.from, wall.to});
-  for (const LoadOptions& load : options.loads) changes_.insert(changes_.end(), {load.from, load.to});
+  for (const WallOptions& wall : options.walls) changes_.push_back(wall.to);
+  for (const LoadOptions& load : options.loads) changes_.push_back(load.to);
   if (options.shaking.acts()) changes_.push_back(options.shaking.start);
 }
 

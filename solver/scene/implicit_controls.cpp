@@ -20,9 +20,7 @@ ImplicitControls make_implicit_controls(const SolveOptions& options) {
                      .linear_tolerance = o.linear_tolerance,
                      .give_up = interrupted},
           .linear = {.solver = o.linear_solver, .iterations = o.linear_iterations},
-          .apex = o.apex,
-          .b_bar = o.b_bar,
-          .filler = o.filler};
+          .b_bar = o.b_bar};
 }
 
 }  // namespace talus::solver

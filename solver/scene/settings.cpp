@@ -39,11 +39,10 @@ PlaneWall make_wall(const WallOptions& o) {
           .kind = o.kind,
           .friction = coefficient(o.friction_angle),
           .speed = o.speed,
-          .from = o.from,
           .to = o.to};
 }
 
-Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp = o.ramp, .from = o.from, .to = o.to}; }
+Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp = o.ramp, .to = o.to}; }
 
 SeparationSettings make_separation(const SolveOptions& o, const GridShape& grid) {
   return {.kind = o.base.separation, .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
@@ -56,7 +55,7 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
                                  .largest = o.largest_step,
                                  .fastest_wave = fastest_wave(o),
                                  .initial_speed = size(o.initial_velocity),
-                                 .kappa = abilities_of(o.flow_integrator()).solve_columns ? o.kappa : 0},
+                                 .kappa = abilities_of(o.flow_integrator()).solve_columns ? column_kappa : 0},
                        .transfer = {.affine = o.transfer == Transfer::apic,
                                     .remaps_velocity = o.stress_update == StressUpdate::modified,
                                     .time = transfer_time_of(o, grid)},
@@ -111,7 +110,6 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.common.bed = {};
   s.common.bed.law = FrictionLaw::stick;
   s.common.separation = {};
-  std::erase_if(s.common.walls, [](const PlaneWall& wall) { return wall.from > 0; });
   for (PlaneWall& wall : s.common.walls) wall.to = 2;
   return s;
 }

@@ -25,7 +25,6 @@ struct Pouliquen : BasalLaw {
     double flow_rule_slope = 0.136;  ///< beta [-]
     double flow_rule_offset = 0;     ///< Gamma [-]
     double slowest_froude = 0.136;   ///< beta_* [-]
-    double hysteresis_power = 1;     ///< kappa [-]
 
     /// The method declares the keys with defaults, help and, where the law is chosen, what they need of one another.
     void describe(recipe::Visitor& v, const LawTable& table) {
@@ -43,9 +42,6 @@ struct Pouliquen : BasalLaw {
       v.number("flow_rule_offset", flow_rule_offset, recipe::not_negative, "pouliquen: Gamma of that flow");
       v.number("slowest_froude", slowest_froude, recipe::positive,
                "pouliquen: beta_*, Froude number of the slowest steady flow");
-      v.number(
-          "hysteresis_power", hysteresis_power, recipe::positive,
-          "pouliquen: power of the Froude number with which friction at rest passes into that of the slowest flow");
       if (table.chosen == name) check_numbers(v, table.name);
     }
 
@@ -69,8 +65,7 @@ struct Pouliquen : BasalLaw {
   /// Whether the law looks at a key.
   static bool uses(std::string_view key) {
     return key == "stop_angle_deg" || key == "steepest_angle_deg" || key == "start_angle_deg" ||
-           key == "layer_length_m" || key == "flow_rule_slope" || key == "flow_rule_offset" ||
-           key == "slowest_froude" || key == "hysteresis_power";
+           key == "layer_length_m" || key == "flow_rule_slope" || key == "flow_rule_offset" || key == "slowest_froude";
   }
   /// The law in a line, for plan and log.
   template <class All>
@@ -78,7 +73,7 @@ struct Pouliquen : BasalLaw {
     return "pouliquen, " + six_digits(o.stop_angle) + ", " + six_digits(o.steepest_angle) + " and " +
            six_digits(o.start_angle) + " deg, L = " + six_digits(o.layer_length) +
            " m, beta = " + six_digits(o.flow_rule_slope) + ", Gamma = " + six_digits(o.flow_rule_offset) +
-           ", beta_* = " + six_digits(o.slowest_froude) + ", power " + six_digits(o.hysteresis_power);
+           ", beta_* = " + six_digits(o.slowest_froude);
   }
   /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
@@ -99,14 +94,13 @@ struct Pouliquen : BasalLaw {
     n[resting] = borne(o.start_angle);
     n[length] = o.layer_length;
   }
-  enum Constant { slope, offset, slowest, power, density, constant_count };  ///< those of the scene
+  enum Constant { slope, offset, slowest, density, constant_count };  ///< those of the scene
   /// This function makes the numbers of the scene from the options of all laws.
   template <class All>
   static void constants(const All& o, const BedSetting& setting, double* c) {
     c[slope] = o.flow_rule_slope;
     c[offset] = o.flow_rule_offset;
     c[slowest] = o.slowest_froude;
-    c[power] = o.hysteresis_power;
     c[density] = setting.density;
   }
 
@@ -120,7 +114,7 @@ struct Pouliquen : BasalLaw {
     const Real flowing = n[deep] + n[spread] / (Real(1) + depth * c[slope] / (n[length] * (at_least + c[offset])));
     if (!(froude < c[slowest])) return flowing;
     const Real start = n[resting] + n[spread] / (Real(1) + depth / n[length]);
-    return Real(start + (flowing - start) * pow(froude / c[slowest], c[power]));
+    return start + (flowing - start) * (froude / c[slowest]);
   }
 };
 

@@ -13,7 +13,7 @@ struct Samosat : BasalLaw {
   static constexpr std::string_view name = "samosat";
   static constexpr bool asks_column = true;
 
-  /// The keys of the law; mu, tau_0, R_s0, kappa, R and B of com1DFA.
+  /// mu, tau_0, R_s0, kappa, R and B of com1DFA. The first two are keys; all its sets of numbers share the others.
   struct Options {
     double friction_coefficient = 0.155;  ///< mu, at high speed [-]
     double minimum_shear = 0;             ///< tau_0 [Pa]
@@ -27,18 +27,10 @@ struct Samosat : BasalLaw {
       v.number("friction_coefficient", friction_coefficient, recipe::not_negative,
                "samosat: mu, at high speed; at rest it is twice as much");
       v.number("minimum_shear_Pa", minimum_shear, recipe::not_negative, "samosat: tau_0, a traction at any speed");
-      v.number("weakening_number", weakening_number, recipe::not_negative,
-               "samosat: R_s0, the rho v^2 over normal stress at which half of what friction is more at rest is left");
-      v.number("karman_constant", karman_constant, recipe::positive, "samosat: kappa of the drag");
-      v.number("roughness_m", roughness, recipe::positive, "samosat: R of the drag; it falls with thickness over R");
-      v.number("drag_offset", drag_offset, recipe::positive, "samosat: B; drag rho v^2 / (ln(h / R) / kappa + B)^2");
     }
   };
   /// Whether the law looks at a key.
-  static bool uses(std::string_view key) {
-    return key == "friction_coefficient" || key == "minimum_shear_Pa" || key == "weakening_number" ||
-           key == "karman_constant" || key == "roughness_m" || key == "drag_offset";
-  }
+  static bool uses(std::string_view key) { return key == "friction_coefficient" || key == "minimum_shear_Pa"; }
   /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
@@ -55,21 +47,28 @@ struct Samosat : BasalLaw {
            " m, B = " + six_digits(o.drag_offset);
   }
 
-  enum Number { mu, shear, rough, count };  ///< as kernels see them: mu [-], tau_0 [Pa], R [m]
+  enum Number { mu, shear, count };  ///< as kernels see them: mu [-], tau_0 [Pa]
   /// This function makes the numbers from the options of all laws.
   template <class All>
   static void numbers(const All& o, const BedSetting& setting, double* n) {
     n[mu] = setting.borne * o.friction_coefficient;
     n[shear] = o.minimum_shear;
-    n[rough] = o.roughness;
   }
-  enum Constant { weakening, inverse_karman, offset, density, constant_count };  ///< R_s0, 1/kappa, B [-], [kg/m3]
+  enum Constant {
+    weakening,
+    inverse_karman,
+    offset,
+    rough,
+    density,
+    constant_count
+  };  ///< R_s0, 1/kappa, B [-], R [m], [kg/m3]
   /// This function makes the numbers of the scene from the options of all laws.
   template <class All>
   static void constants(const All& o, const BedSetting& setting, double* c) {
     c[weakening] = o.weakening_number;
     c[inverse_karman] = 1 / o.karman_constant;
     c[offset] = o.drag_offset;
+    c[rough] = o.roughness;
     c[density] = setting.density;
   }
 
@@ -83,7 +82,7 @@ struct Samosat : BasalLaw {
   /// The traction of turbulence of (T13c) [Pa]; a column thinner than R counts as R, as in com1DFA.
   template <class Real>
   TALUS_HD static Real drag(const LawNumbers<Real>& n, const Slip<Real>& slip) {
-    const Real over_rough = slip.load / (n.everywhere[density] * n[rough]);
+    const Real over_rough = slip.load / (n.everywhere[density] * n.everywhere[rough]);
     const Real profile =
         Real(n.everywhere[offset] + (over_rough > Real(1) ? log(over_rough) * n.everywhere[inverse_karman] : Real(0)));
     return n.everywhere[density] * slip.speed * slip.speed / (profile * profile);

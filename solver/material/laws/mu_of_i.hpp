@@ -50,11 +50,11 @@ struct MuOfI : FlowingLaw<MuOfI> {
     double inertial_number = 0.279;          ///< I_0, at half of the rise [-]
     double grain_diameter = 5.3e-4;          ///< [m]
     double grain_density = 2450;             ///< [kg/m3]
-    double fast_friction_rise = 0.05;        ///< mu_inf, slope of mu at high I [-]
+    double fast_friction_rise = 0.05;        ///< mu_inf, slope of mu at high I (Barker & Gray 2017) [-]; no key
     SlowFlow slow_flow = SlowFlow::yield;
     double volume_fraction = 0;            ///< of the mass at the start [-]; 0: shear keeps the volume
     double volume_fraction_at_rest = 0.6;  ///< that slow shear leads to [-]
-    double volume_fraction_slope = 0.2;    ///< what a unit of I takes from that (Forterre & Pouliquen 2008) [-]
+    double volume_fraction_slope = 0.2;    ///< what a unit of I takes from that (Forterre & Pouliquen 2008) [-]; no key
     double dilatancy_rate = 4;             ///< K_3 of (T27c) (Pailha & Pouliquen 2009: about 4) [-]
 
     /// The friction coefficient of slow flow, mu_s [-].
@@ -276,8 +276,6 @@ inline void MuOfI::Options::describe(recipe::Visitor& v, const LawTable& table) 
   v.number("inertial_number", inertial_number, recipe::positive, "mu-of-i: I_0, the inertial number at half the rise");
   v.number("grain_diameter_m", grain_diameter, recipe::positive, "mu-of-i: diameter of the grains");
   v.number("grain_density_kg_m3", grain_density, recipe::positive, "mu-of-i: density of the grains themselves");
-  v.number("fast_friction_rise", fast_friction_rise, recipe::not_negative,
-           "mu-of-i: mu_inf, slope of the friction over I in very fast flow");
   recipe::choice(v, "slow_flow", slow_flow, {{"yield", SlowFlow::yield}, {"creep", SlowFlow::creep}},
                  "mu-of-i: below the static angle the mass rests, or creeps (well posed without elasticity too)");
   v.needs(slow_flow == SlowFlow::yield || first_well_posed() > 0,
@@ -289,8 +287,6 @@ inline void MuOfI::Options::describe(recipe::Visitor& v, const LawTable& table) 
            "mu-of-i: share of the space that the grains fill at the start; 0: shear does not change the volume");
   v.number("volume_fraction_at_rest", volume_fraction_at_rest, Range{0.3, 0.75},
            "mu-of-i: volume fraction that slow shear leads to; denser grains dilate, looser ones contract");
-  v.number("volume_fraction_slope", volume_fraction_slope, Range{0, 0.25},
-           "mu-of-i: what the inertial number takes from that per unit, up to 0.5 of it");
   v.number("dilatancy_rate", dilatancy_rate, Range{0, 100, true, false},
            "mu-of-i: K_3, tangent of the dilatancy angle over the excess of the volume fraction");
   v.needs(

@@ -56,7 +56,7 @@ CriticalMass critical_mass(const Scene& scene, const SolveOptions& options, cons
   CriticalMass mass;
   if (failure.shares.empty()) return mass;
   const ParticleState& points = scene.points;
-  const auto fails = [&](std::size_t p) { return failure.shares[p] >= options.stability.critical_share; };
+  const auto fails = [&](std::size_t p) { return failure.shares[p] >= 0.5; };
   mass.thickness = thickness_of(scene, options, points, fails);
   const std::vector<double> all = thickness_of(scene, options, points, [](std::size_t) { return true; });
   ParticleState moved = points;

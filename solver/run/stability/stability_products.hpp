@@ -13,7 +13,7 @@
 
 namespace talus::solver {
 
-/// The mass that fails first: the points whose way is at least `critical_share` of the mean one (T40b).
+/// The mass that fails first: the points whose way is at least half of the mean one (T40b).
 struct CriticalMass {
   std::vector<double> thickness;     ///< vertical, over every map cell [m]
   std::vector<double> displacement;  ///< mean over a column's points, over the way of the mass [-]

@@ -30,9 +30,7 @@ SolverSettings static_settings(const SolveOptions& options, const Scene& scene, 
   s.common.bed = weakened(s.common.bed, factor);
   s.common.separation = {};
   s.common.damping = 0;
-  std::erase_if(s.common.walls, [](const PlaneWall& wall) { return wall.from > 0; });
   for (PlaneWall& wall : s.common.walls) wall.to = 1e30;
-  std::erase_if(s.common.loads, [](const Load& load) { return load.from > 0; });
   for (Load& load : s.common.loads) {
     load.ramp = 1;
     load.to = 1e30;

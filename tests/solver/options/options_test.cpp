@@ -171,11 +171,10 @@ TEST(SolveOptions, strengths_go_together) {
             "its stiffness). Take model = \"drucker-prager\", or leave stiffness out");
   EXPECT_EQ(
       faults("[solve.material]\ndilatancy_angle_deg=40\n[[solve.part]]\nrelease=\"x\"\nsoftening_slip_m="
-             "1\nresidual_cohesion_Pa=3\nstiffness_check=true"),
+             "1\nresidual_cohesion_Pa=3\nstiffness=\"auto\""),
       "[[solve.part]] release = \"x\" softens to 0 deg and 3 Pa, from 30 deg and 0 Pa (a residual strength is no "
       "larger than the first). Lower residual_friction_angle_deg or residual_cohesion_Pa\n"
-      "[[solve.part]] release = \"x\" gives stiffness or stiffness_check (they are the whole scene's). Give them "
-      "in [solve.material]\n"
+      "[[solve.part]] release = \"x\" gives stiffness (it is the whole scene's). Give it in [solve.material]\n"
       "[solve.material] dilatancy_angle_deg = 40 is above friction_angle_deg = 30 (the material would make energy "
       "as it shears). Lower dilatancy_angle_deg; 0 is usual for run-out");
   EXPECT_EQ(faults("[solve.base]\nlaw=\"velocity-weakening\"\npeak_coefficient=0.1"),
@@ -196,13 +195,6 @@ TEST(SolveOptions, a_key_that_is_gone_is_refused_with_advice) {
   EXPECT_NE(found.find("[solve] flip_fraction: no longer a key. Give transfer_time_s"), std::string::npos) << found;
 }
 
-TEST(SolveOptions, what_would_have_no_effect_is_refused) {
-  EXPECT_NE(faults("[solve]\nkappa=0.4").find("[solve] kappa has no effect"), std::string::npos);
-  EXPECT_EQ(faults("[solve]\nkappa=0.4\nintegrator=\"column-implicit\""), "");
-  EXPECT_NE(faults("[solve.material]\nstiffness_strain=0.1").find("stiffness_strain has no effect"), std::string::npos);
-  EXPECT_EQ(faults("[solve.material]\nstiffness_strain=0.1\nstiffness=\"auto\""), "");
-}
-
 TEST(SolveOptions, an_accuracy_is_for_the_integrator_that_chooses) {
   EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.01"), "");
   EXPECT_NE(faults("[solve]\naccuracy=0.01")
@@ -215,10 +207,6 @@ TEST(SolveOptions, an_accuracy_is_for_the_integrator_that_chooses) {
 TEST(SolveOptions, what_follows_from_accuracy_is_not_given_beside_it) {
   const std::string asked = "[solve]\nintegrator=\"auto\"\naccuracy=0.01\n", why = " (it follows from accuracy)";
   EXPECT_NE(faults(asked + "cfl=0.3").find("[solve] cfl beside accuracy" + why), std::string::npos);
-  EXPECT_NE(faults(asked + "kappa=0.4").find("[solve] kappa beside accuracy" + why), std::string::npos);
-  EXPECT_NE(faults(asked + "[solve.material]\nstiffness=\"auto\"\nstiffness_strain=0.1")
-                .find("[solve.material] stiffness_strain beside [solve] accuracy" + why),
-            std::string::npos);
 }
 
 TEST(SolveOptions, steps_longer_than_lone_points_bear_are_for_columns) {

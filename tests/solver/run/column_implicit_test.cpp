@@ -261,7 +261,7 @@ TEST_P(ColumnImplicit, slow_waves_along_the_column_as_the_theory_says) {
     const double fine = 0.3 * Bounce::layer / b.waves();
     const double slow = b.measured(Integrator::column_implicit, b.step(), GetParam()),
                  true_one = b.measured(Integrator::explicit_, fine, GetParam());
-    const double expected = b.period(b.step(), default_kappa) / b.period(fine, 0);
+    const double expected = b.period(b.step(), column_kappa) / b.period(fine, 0);
     std::printf("  %d layers, cells %g times as wide: period %.4f s, explicit %.4f s: %.3f (theory %.3f)\n", b.layers,
                 b.over, slow, true_one, slow / true_one, expected);
     EXPECT_NEAR(slow / true_one, expected, 0.05 * expected);  // overtones make a share of the momentum
@@ -276,7 +276,7 @@ TEST_P(ColumnImplicit, come_to_rest_under_damping_where_explicit_steps_do) {
     const Scene scene = make_scene(b.domain(), o);
     const auto solver = make_solver(scene, o, GetParam());
     const double start = centre(*solver, scene).z;
-    run_to(*solver, 20 * b.period(b.step(), default_kappa));
+    run_to(*solver, 20 * b.period(b.step(), column_kappa));
     EXPECT_LT(solver->energies().kinetic, 1e-6 * solver->energies().elastic);
     return start - centre(*solver, scene).z;
   };

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From domain.vdb to run.h5: what a run leaves, what it goes on from, and the check of its stiffness.
+// From domain.vdb to run.h5: what a run leaves, and what it goes on from.
 #include "solver/run/run_stage.hpp"
 
 #include <algorithm>
 
 #include "common/run/run_file.hpp"
 #include "common/stage/console.hpp"
-#include "solver/run/stiffness_check.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 
 namespace talus::solver::testing {
@@ -75,17 +74,6 @@ TEST_F(RunStage, goes_on_from_the_checkpoint_that_is_named) {
   EXPECT_EQ(checkpoint_of({.restart = fs::path("other.h5")}, out()), fs::path("other.h5"));
   StageContext context = this->context();
   EXPECT_THROW(run(context, {.restart = fs::path()}, options()), DataError) << "there is none";
-}
-
-TEST_F(RunStage, runs_once_more_and_twice_as_stiff_to_check_the_stiffness) {
-  StageContext context = this->context();
-  run(context, {}, options());
-  ASSERT_FALSE(fs::exists(out() / "stiffness-check"));
-  check_stiffness(*plan(domain_, options()), make_device(On::cpu), context, out() / "run.h5");
-  const talus::Run soft = read_run(out() / "run.h5"), stiff = read_run(out() / "stiffness-check" / "run.h5");
-  // Steps follow the speed of waves: the root of two, less what the speed of the heap takes.
-  EXPECT_GT(static_cast<double>(stiff.summary.steps), 1.2 * static_cast<double>(soft.summary.steps));
-  EXPECT_LT(static_cast<double>(stiff.summary.steps), 1.5 * static_cast<double>(soft.summary.steps));
 }
 
 }  // namespace

@@ -17,16 +17,14 @@ TEST(ImplicitControls, are_those_of_the_recipe) {
   o.implicit = {.step = 0.03,
                 .newmark_alpha = 0.5,
                 .newmark_beta = 1,
-                .newton_iterations = 7,
                 .newton_tolerance = 1e-4,
                 .linear_solver = LinearSolver::cholesky,
                 .linear_tolerance = 1e-5,
+                .b_bar = true,
+                .newton_iterations = 7,
                 .forcing = Forcing::fixed,
                 .linear_iterations = 77,
-                .step_cuts = 3,
-                .apex = 0.2,
-                .b_bar = true,
-                .filler = 1e-2};
+                .step_cuts = 3};
   const ImplicitControls c = make_implicit_controls(o);
   EXPECT_TRUE(c.dynamic);
   EXPECT_EQ(c.step, 0.03);
@@ -39,9 +37,7 @@ TEST(ImplicitControls, are_those_of_the_recipe) {
   EXPECT_EQ(c.newton.linear_tolerance, 1e-5);
   EXPECT_EQ(c.linear.solver, LinearSolver::cholesky);
   EXPECT_EQ(c.linear.iterations, 77);
-  EXPECT_EQ(c.apex, 0.2);
   EXPECT_TRUE(c.b_bar);
-  EXPECT_EQ(c.filler, 1e-2);
   EXPECT_EQ(c.newton.give_up, interrupted) << "a step ends where a signal asks for the end";
 }
 

@@ -36,7 +36,6 @@ TEST(Settings, angles_become_coefficients_and_words_become_laws) {
                      .kind = WallKind::frictional,
                      .friction_angle = 12,
                      .speed = 0.5,
-                     .from = 1,
                      .to = 2});
   o.obstacles.push_back({.name = "wall", .level_set = "a.vdb", .grid = "b", .friction_angle = 23});
   const SolverSettings s = make_settings(o, grid);
@@ -147,7 +146,7 @@ TEST(Settings, gravity_loading_holds_what_yields_and_keeps_the_walls_of_the_star
   o.material.dilatancy_angle = 5;
   o.implicit.newton_iterations = 1;
   o.base.cohesion = 100;
-  o.walls = {{.axis = Axis::x}, {.axis = Axis::y, .from = 3}};
+  o.walls = {{.axis = Axis::x}};
   const SolverSettings s = for_gravity_loading(make_settings(o, grid), 8);
   EXPECT_EQ(s.integrator, Integrator::quasi_static);
   EXPECT_FALSE(s.implicit.dynamic);
