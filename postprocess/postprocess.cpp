@@ -87,7 +87,7 @@ Dependencies depends(const StageContext& context) {
   inputs.insert(inputs.begin(), run);
   for (const fs::path& polygons : hazard_inputs(options)) inputs.push_back(polygons);
   if (fs::exists(budget_file(run))) inputs.push_back(budget_file(run));
-  if (options.report)
+  if (options.writes("report"))
     for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
   if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
   Dependencies depends = ensemble_depends(context);

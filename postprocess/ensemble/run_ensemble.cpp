@@ -93,7 +93,7 @@ void write_results(StageContext& context, const Stage& stage, const Options& opt
     context.results.push_back(file);
   const std::string used = used_text(context, stage, options, ensemble, survey);
   write("postprocess.used.toml", used);
-  if (options.report)
+  if (options.writes("report"))
     write("ensemble.html", ensemble_html({ensemble, options, survey, rows, sensitive, texts_of_stages(context, used)}));
   stop_if_interrupted("writing probability.nc");
   context.results.push_back(context.out / "probability.nc");

@@ -85,22 +85,15 @@ char size_letter(double volume) { return volume < 25e3 ? 'S' : volume < 60e3 ? '
 class AvaframeWriter : public Writer {
  public:
   std::string name() const override { return "AvaFrame"; }
-  void describe(recipe::Visitor& v) override {
-    v.flag("avaframe", avaframe_,
-           "also write peak pressure, thickness normal to the slope and speed as AvaFrame names and reads them, in "
-           "maps/avaframe");
-    recipe::choice(v, "avaframe_format", avaframe_format_, {{"tif", AvaFrameFormat::tif}, {"asc", AvaFrameFormat::asc}},
-                   "format of these; every version of AvaFrame, and ISeeSnow, reads asc");
+  std::vector<std::string_view> words() const override { return {"avaframe-tif", "avaframe-asc"}; }
+  bool wanted(const Job& job) const override {
+    return job.options.writes("avaframe-tif") || job.options.writes("avaframe-asc");
   }
-  bool wanted(const Job& /*job*/) const override { return avaframe_; }
   std::vector<std::string> names() const override { return {"maps/avaframe/rel*_mpm*"}; }
   Files write(const Job& job) const override {
-    return write_avaframe(folder_of(job, "maps/avaframe"), job.run, settings_text(job.run, job.file), avaframe_format_);
+    const AvaFrameFormat format = job.options.writes("avaframe-asc") ? AvaFrameFormat::asc : AvaFrameFormat::tif;
+    return write_avaframe(folder_of(job, "maps/avaframe"), job.run, settings_text(job.run, job.file), format);
   }
-
- private:
-  bool avaframe_ = false;
-  AvaFrameFormat avaframe_format_ = AvaFrameFormat::tif;
 };
 
 }  // namespace

@@ -16,26 +16,16 @@ namespace talus::postprocess {
 
 namespace {
 
-std::string meaning_of_nodata(bool zero_inside, Outside outside) {
-  if (!zero_inside) return "outside the computed domain, or never reached";
-  return outside == Outside::zero ? "not used: 0 outside the computed domain too" : "outside the computed domain";
+const char* meaning_of_nodata(bool zero_inside) {
+  return zero_inside ? "outside the computed domain" : "outside the computed domain, or never reached";
 }
 
 class GeotiffWriter : public Writer {
  public:
   std::string name() const override { return "GeoTIFF"; }
-  void describe(recipe::Visitor& v) override {
-    v.flag("nodata_zero", nodata_zero_,
-           "GeoTIFFs hold 0 outside the computed domain, for tools that take nodata badly (otherwise: nodata there)");
-  }
   std::vector<std::string> names() const override { return names_of_maps(".tif"); }
   std::vector<std::string> outdated() const override { return {}; }
-  Files write(const Job& job) const override {
-    return write_geotiffs(folder_of(job, "maps"), job.run, nodata_zero_ ? Outside::zero : Outside::nodata);
-  }
-
- private:
-  bool nodata_zero_ = false;
+  Files write(const Job& job) const override { return write_geotiffs(folder_of(job, "maps"), job.run); }
 };
 
 }  // namespace
@@ -67,13 +57,10 @@ Files geotiff_files(const std::filesystem::path& folder, const RunMaps& maps) {
   return files;
 }
 
-Files write_geotiffs(const std::filesystem::path& folder, const Run& run, Outside outside) {
+Files write_geotiffs(const std::filesystem::path& folder, const Run& run) {
   const Files files = geotiff_files(folder, run.maps);
   auto file = files.begin();
-  const auto put = [&](const char* long_name, const char* unit, bool zero_inside, Raster raster) {
-    if (zero_inside && outside == Outside::zero)
-      std::replace_if(
-          raster.values.begin(), raster.values.end(), [](double v) { return std::isnan(v); }, 0.0);
+  const auto put = [&](const char* long_name, const char* unit, bool zero_inside, const Raster& raster) {
     RasterTags tags{fmt::format("{} [{}]", long_name, unit), unit, {}};
     tags.metadata = {
         {"TITLE", run.summary.title},
@@ -83,7 +70,7 @@ Files write_geotiffs(const std::filesystem::path& folder, const Run& run, Outsid
         {"THICKNESS_CONVENTION", "vertical thickness, measured along the plumb line (not normal to the slope)"},
         {"FLOW_THRESHOLD_M", fmt::format("{}", run.maps.threshold)},
         {"TIME_END_S", fmt::format("{}", run.summary.time_end)},
-        {"NODATA_MEANING", meaning_of_nodata(zero_inside, outside)},
+        {"NODATA_MEANING", meaning_of_nodata(zero_inside)},
         {"SOURCE", "Talus " + run.summary.version}};
     if (const std::string accepted = accepted_words(run.summary); !accepted.empty())
       tags.metadata.emplace_back("ACCEPTED", accepted);

@@ -12,15 +12,11 @@
 
 namespace talus::postprocess {
 
-/// What stands outside the computed domain, where nothing can be known.
-enum class Outside { nodata, zero };
-
 /// Paths of the GeoTIFFs of a run: a map each, then the deposit of each release.
 Files geotiff_files(const std::filesystem::path& folder, const RunMaps& maps);
 
-/// Write every product field as FOLDER/NAME.tif (cloud-optimised). Returns the files. Throws DataError. With
-/// Outside::zero for tools that take nodata badly: all maps but the arrival time, whose zero would be a time.
-Files write_geotiffs(const std::filesystem::path& folder, const Run& run, Outside outside = Outside::nodata);
+/// Write every product field as FOLDER/NAME.tif (cloud-optimised). Returns the files. Throws DataError.
+Files write_geotiffs(const std::filesystem::path& folder, const Run& run);
 
 /// Metadata of a map: title, scene, run, quantity, source.
 RasterTags plain_tags(const Run& run, const std::string& quantity, const std::string& unit);

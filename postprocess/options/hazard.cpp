@@ -20,17 +20,12 @@ void IntensityOptions::describe(recipe::Visitor& v) {
                   {"debris-flow-other", Guideline::debris_flow_other},
                   {"own", Guideline::own}},
                  "whose limits make the classes of maps/intensity.tif; own: those below; none: no such map");
-  v.numbers("thickness_m", thickness, recipe::positive, "own: peak thickness from which class 1, 2, ... begins");
+  v.numbers("thickness_m", thickness, recipe::positive,
+            "own: peak thickness from which class 1, 2, ... begins; any of the quantities given is enough");
   v.numbers("speed_m_s", speed, recipe::positive, "own: the same of the peak speed");
-  v.numbers("thickness_speed_m2_s", thickness_speed, recipe::positive,
-            "own: the same of peak thickness times peak speed");
   v.numbers("pressure_kPa", pressure, recipe::positive, "own: the same of the peak pressure");
-  recipe::choice(v, "rule", rule, {{"any", Rule::any}, {"all", Rule::all}},
-                 "own: a class is reached where any of the quantities given reaches its limit, or all do");
-  const std::pair<const char*, const std::vector<double>*> given[] = {{"thickness_m", &thickness},
-                                                                      {"speed_m_s", &speed},
-                                                                      {"thickness_speed_m2_s", &thickness_speed},
-                                                                      {"pressure_kPa", &pressure}};
+  const std::pair<const char*, const std::vector<double>*> given[] = {
+      {"thickness_m", &thickness}, {"speed_m_s", &speed}, {"pressure_kPa", &pressure}};
   std::size_t classes = 0;
   for (const auto& [key, limits] : given) classes = std::max(classes, limits->size());
   v.needs(guideline == Guideline::own || classes == 0,
@@ -38,7 +33,7 @@ void IntensityOptions::describe(recipe::Visitor& v) {
            "Leave them out, or take guideline = \"own\""});
   v.needs(guideline != Guideline::own || classes > 0,
           {"[postprocess.intensity] guideline = \"own\" without limits", "there would be no class",
-           "Give thickness_m, speed_m_s, thickness_speed_m2_s or pressure_kPa"});
+           "Give thickness_m, speed_m_s or pressure_kPa"});
   for (const auto& [key, limits] : given) {
     v.needs(limits->empty() || limits->size() == classes,
             {fmt::format("[postprocess.intensity] {} has {} limits, another quantity {}", key, limits->size(), classes),

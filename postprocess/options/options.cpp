@@ -123,7 +123,6 @@ void SurveyOptions::describe(recipe::Visitor& v) {
            "with a sigma: thickness or change below this times sigma counts as none (1.96: 95 %); 0: off");
   v.integer("resamples", resamples, {0, 100000},
             "with a sigma: surveys drawn within their error, for the spread of the scores; 0: none");
-  v.integer("resample_seed", resample_seed, {0, 2147483647}, "same seed, same spread");
 }
 
 void HazardOptions::describe(recipe::Visitor& v) {
@@ -152,14 +151,7 @@ void HazardOptions::describe(recipe::Visitor& v) {
            "Give a class for each pair"});
 }
 
-void ThreeDOptions::describe(recipe::Visitor& v) {
-  v.flag("surface", surface, "surface of the flow over time as a mesh, for ParaView: 3d/surface.pvd");
-  v.flag("terrain", terrain, "the ground with all maps on it, for ParaView: 3d/terrain.vtp");
-  v.flag("points", points, "the material points over time, for ParaView: 3d/points.pvd; needs a run with point frames");
-  v.number("largest_MB", largest, recipe::positive,
-           "most that may be written into 3d/, by an estimate that is made beforehand; more is refused");
-  v.flag("report", report, "a view in 3-D in the report: terrain, flow over time, deposit");
-}
+bool Options::writes(std::string_view word) const { return std::ranges::find(outputs, word) != outputs.end(); }
 
 void Options::describe(recipe::Visitor& v) {
   v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
@@ -173,7 +165,6 @@ void Options::describe(recipe::Visitor& v) {
   v.names("accept", accept, {"change-outside-slide", "swapped-surveys"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.text("institution", institution, "who made this, for the NetCDF file");
-  v.flag("report", report, "write report.html: maps, profiles, scores and settings on one page to send on");
   v.text("start_time", start_time,
          "when the failure began, UTC, as 1903-04-29 04:10:00, for the time axis of the NetCDF file; empty: not known");
   v.needs(start_time.empty() || is_date(start_time), {"[postprocess] start_time = \"" + start_time + "\"",
@@ -181,8 +172,11 @@ void Options::describe(recipe::Visitor& v) {
   v.path("thalweg", thalweg,
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");
-  writers.describe(v);
-  recipe::table(v, "three_d", three_d, "OUT/3d, for ParaView, and the report's view in 3-D");
+  v.names(
+      "outputs", outputs, writers.words(),
+      "what is written besides maps, tables and scores: report.html, with a view in 3-D (report-3d); surface, terrain "
+      "and points over time for ParaView (3d/); a film (mp4, gif; needs ffmpeg); peaks as AvaFrame names them "
+      "(avaframe-tif, avaframe-asc)");
   recipe::table(
       v, "survey", survey,
       "what the run is scored against: thickness, or difference, or after_dem, or polygon; all empty: no scores");

@@ -37,7 +37,6 @@ struct SurveyOptions {
   double correlation_length = 0;              // range within which errors are alike [m]; 0 = as the sigma raster says
   double detection = 1.96;                    // level of detection over sigma
   int resamples = 200;                        // of the survey, within its error
-  int resample_seed = 1;
 
   bool measures() const {
     return !(thickness.empty() && difference.empty() && after_dem.empty());
@@ -65,39 +64,26 @@ struct HazardOptions {
   void describe(recipe::Visitor& v);
 };
 
-/// Contents of OUT/3d, for ParaView, and the report's view in 3-D.
-struct ThreeDOptions {
-  bool surface = true;    // of the flow over time, as a mesh
-  bool terrain = true;    // with the maps on it
-  bool points = false;    // material points over time
-  double largest = 4000;  // of 3d/, by estimate [MB]
-  bool report = true;     // a view in the report
-
-  /// True where something is written into OUT/3d.
-  bool writes() const { return surface || terrain || points; }
-  /// The method declares the keys with defaults and help.
-  void describe(recipe::Visitor& v);
-};
-
-/// Keys of [postprocess] that several outputs read; keys of one output are members of its writer.
+/// The keys of [postprocess].
 struct Options {
   std::filesystem::path run;         // empty = OUT/run.h5
   double footprint_threshold = 1.0;  // [m]
   double deposit_threshold = 1.0;    // [m]
   std::vector<double> classes;       // lower limits of the thickness classes [m]; empty = by the deposit's thickness
   std::string institution;
-  bool report = true;             // write report.html
+  std::vector<std::string> outputs{"report", "report-3d", "surface", "terrain"};  // words of the writers
   std::string start_time;         // when the failure began, UTC; empty = not known
   std::filesystem::path thalweg;  // line along which run-out is measured; empty = found from the run
   SurveyOptions survey;
   IntensityOptions intensity;
   ReachConeOptions reach_cone;
   BuildingOptions buildings;
-  ThreeDOptions three_d;
   HazardOptions hazard;
   Writers writers;
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
+  /// True if `outputs` has the word.
+  bool writes(std::string_view word) const;
   /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };

@@ -6,9 +6,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
-
-#include "common/recipe/recipe.hpp"
 
 namespace talus::postprocess {
 
@@ -16,14 +15,14 @@ struct Job;  // writers/job.hpp
 
 using Files = std::vector<std::filesystem::path>;
 
-/// One output: its keys, the names of its files, and the code that writes them.
+/// One output: the words that ask for it, the names of its files, and the code that writes them.
 class Writer {
  public:
   virtual ~Writer() = default;
   /// Unique name in the list: "netcdf".
   virtual std::string name() const = 0;
-  /// Declares the keys of [postprocess] that only this writer reads.
-  virtual void describe(recipe::Visitor& /*v*/) {}
+  /// Words of [postprocess] outputs that ask for it.
+  virtual std::vector<std::string_view> words() const { return {}; }
   /// True if the recipe asks for the output and the run has its data.
   virtual bool wanted(const Job& /*job*/) const { return true; }
   /// Throws DataError if a wanted output lacks frames, a program or space. Called before any file is written.
@@ -37,12 +36,12 @@ class Writer {
   virtual Files write(const Job& job) const = 0;
 };
 
-/// All writers in the order of writing, with the values of their keys. Copies share the writers.
+/// All writers in the order of writing. Copies share the writers.
 class Writers {
  public:
   Writers();
-  /// Declares the keys of all writers.
-  void describe(recipe::Visitor& v);
+  /// Words of all writers.
+  std::vector<std::string_view> words() const;
   /// Calls check() of the wanted writers.
   void check(const Job& job) const;
   /// Deletes the outdated files under `out`, in reverse order of writing: score.json, which marks complete results,

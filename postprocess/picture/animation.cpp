@@ -26,8 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr int seconds_at_the_end = 2;
 
-enum class Animation { none, mp4, gif };
-
 bool has_program(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
@@ -71,8 +69,8 @@ class Pipe {
 
 /// MP4 that every player takes (even sizes, 4:2:0); GIF smaller, with a palette of its own. Class colours are flat, so
 /// nothing is dithered.
-std::string encoding(Animation animation) {
-  if (animation == Animation::gif)
+std::string encoding(std::string_view format) {
+  if (format == "gif")
     return "-vf 'scale=960:-1:flags=lanczos,split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none' -f gif";
   return "-vf 'scale=1440:-2:flags=lanczos' -c:v libx264 -pix_fmt yuv420p -crf 20 -movflags +faststart -f mp4";
 }
@@ -110,35 +108,33 @@ bool encode(const PictureInput& input, const std::string& tail, int rate) {
 class AnimationWriter : public Writer {
  public:
   std::string name() const override { return "animation"; }
-  void describe(recipe::Visitor& v) override {
-    recipe::choice(v, "animation", animation_,
-                   {{"none", Animation::none}, {"mp4", Animation::mp4}, {"gif", Animation::gif}},
-                   "a film of the flow on the map; needs the program ffmpeg and a run with frames");
-  }
-  bool wanted(const Job& /*job*/) const override { return animation_ != Animation::none; }
+  std::vector<std::string_view> words() const override { return {"mp4", "gif"}; }
+  bool wanted(const Job& job) const override { return job.options.writes("mp4") || job.options.writes("gif"); }
   void check(const Job& job) const override {
     if (!has_program("ffmpeg"))
-      throw DataError({"[postprocess] animation: ffmpeg was not found", "it makes the film",
-                       "Install it: apt-get install ffmpeg, or set animation = \"none\""});
+      throw DataError({"[postprocess] outputs asks for a film: ffmpeg was not found", "it makes the film",
+                       "Install it: apt-get install ffmpeg, or leave mp4 and gif out"});
     const std::size_t frames = job.run.frames.time.size();
     if (frames < 2)
-      throw DataError({fmt::format("[postprocess] animation: the run holds {} frames", frames), "a film needs two",
-                       "Set frame_interval_s of [solve] and run talus-solve again, or animation = \"none\""});
+      throw DataError({fmt::format("[postprocess] outputs asks for a film: the run holds {} frames", frames),
+                       "a film needs two",
+                       "Set frame_interval_s of [solve] and run talus-solve again, or leave mp4 and gif out"});
   }
   std::vector<std::string> names() const override { return {"animation.mp4", "animation.gif"}; }
   Files write(const Job& job) const override {
-    fs::path file = job.out / (animation_ == Animation::gif ? "animation.gif" : "animation.mp4");
-    PendingFile pending(file);
-    const auto tail = encoding(animation_) + " " + quoted(pending.path().string());
-    if (!encode(picture_of(job), tail, film_rate(job.run.frames.time.size())))
-      throw DataError({file.string() + ": ffmpeg could not make it", "its own message is above",
-                       "Free space or name another folder with --out; animation = \"none\" leaves the film out"});
-    pending.commit();
-    return {file};
+    Files files;
+    for (const std::string_view format : words()) {
+      if (!job.options.writes(format)) continue;
+      files.push_back(job.out / fmt::format("animation.{}", format));
+      PendingFile pending(files.back());
+      const auto tail = encoding(format) + " " + quoted(pending.path().string());
+      if (!encode(picture_of(job), tail, film_rate(job.run.frames.time.size())))
+        throw DataError({files.back().string() + ": ffmpeg could not make it", "its own message is above",
+                         "Free space or name another folder with --out, or leave the film out of outputs"});
+      pending.commit();
+    }
+    return files;
   }
-
- private:
-  Animation animation_ = Animation::none;
 };
 
 }  // namespace

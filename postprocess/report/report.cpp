@@ -63,7 +63,7 @@ Json map_json(const ReportInput& input) {
   json["frames"] = frames_json(input, window, coarsest);
   json["lines"] = lines_json(input, window);
   json["coarsest"] = coarsest;
-  json["relief"] = input.options.three_d.report;
+  json["relief"] = input.options.writes("report-3d");
   return json;
 }
 
@@ -87,7 +87,8 @@ std::vector<StageText> texts_of_stages(const Job& job) {
 class ReportWriter : public Writer {
  public:
   std::string name() const override { return "report"; }
-  bool wanted(const Job& job) const override { return job.options.report; }
+  std::vector<std::string_view> words() const override { return {"report", "report-3d"}; }
+  bool wanted(const Job& job) const override { return job.options.writes("report"); }
   std::vector<std::string> names() const override { return {"report.html"}; }
   Files write(const Job& job) const override {
     return {write_file(job, "report.html",

@@ -80,8 +80,8 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
               DistancesAlong(scored.thalweg, survey.grid)};
   for (std::size_t i = 0; i < survey.deposit.size(); ++i)
     fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
-  RandomField errors(survey.grid, survey.error.correlation_length,
-                     static_cast<std::uint64_t>(options.survey.resample_seed));
+  constexpr std::uint64_t seed = 1;
+  RandomField errors(survey.grid, survey.error.correlation_length, seed);
   Progress progress;
   for (int draw = 0; draw < options.survey.resamples; ++draw) {
     if (progress.due())

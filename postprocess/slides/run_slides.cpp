@@ -30,7 +30,7 @@ void write_all(StageContext& context, const Stage& stage, const Options& options
                                         {"slides", members_words(ensemble)},
                                         {"CRS", crs_name(ensemble.counts.scene.grid.crs_wkt)}});
   write("postprocess.used.toml", used);
-  if (options.report) {
+  if (options.writes("report")) {
     const EnsemblePageInput input{ensemble, options, no_survey, rows, {}, texts_of_stages(context, used)};
     write("slides.html", ensemble_html(input, slide_page_parts(input)));
   }

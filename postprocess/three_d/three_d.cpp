@@ -31,7 +31,7 @@ std::optional<std::size_t> frame_of_points(const PointFrames& points, double tim
 /// Writes the files one after another and keeps what there is to open.
 class ThreeDFiles {
  public:
-  ThreeDFiles(const fs::path& folder, const ThreeDOptions& options, const Run& run, const PointFrames& points)
+  ThreeDFiles(const fs::path& folder, const ThreeDParts& options, const Run& run, const PointFrames& points)
       : folder_(folder), options_(options), run_(run), points_(points) {}
 
   Files write() {
@@ -98,7 +98,7 @@ class ThreeDFiles {
   }
 
   const fs::path& folder_;
-  const ThreeDOptions& options_;
+  const ThreeDParts& options_;
   const Run& run_;
   const PointFrames& points_;
   Progress progress_;
@@ -116,8 +116,9 @@ double megabytes_under(const fs::path& folder) {
 class VtkWriter : public Writer {
  public:
   std::string name() const override { return "3d"; }
-  bool wanted(const Job& job) const override { return job.options.three_d.writes(); }
-  void check(const Job& job) const override { check_three_d(job.options.three_d, job.run, PointFrames(job.file)); }
+  std::vector<std::string_view> words() const override { return {"surface", "terrain", "points"}; }
+  bool wanted(const Job& job) const override { return parts_of(job).any(); }
+  void check(const Job& job) const override { check_three_d(parts_of(job), job.run, PointFrames(job.file)); }
   std::vector<std::string> names() const override {
     const std::string number = "[0-9][0-9][0-9][0-9]*.vtp";
     return {"3d/surface/surface." + number,
@@ -134,7 +135,12 @@ class VtkWriter : public Writer {
     return files;
   }
   Files write(const Job& job) const override {
-    return write_three_d(job.out / "3d", job.options.three_d, job.run, PointFrames(job.file));
+    return write_three_d(job.out / "3d", parts_of(job), job.run, PointFrames(job.file));
+  }
+
+ private:
+  static ThreeDParts parts_of(const Job& job) {
+    return {job.options.writes("surface"), job.options.writes("terrain"), job.options.writes("points")};
   }
 };
 
@@ -142,7 +148,7 @@ class VtkWriter : public Writer {
 
 std::shared_ptr<Writer> vtk_writer() { return std::make_shared<VtkWriter>(); }
 
-ThreeDSize size_of_three_d(const ThreeDOptions& options, const Run& run, const PointFrames& points) {
+ThreeDSize size_of_three_d(const ThreeDParts& options, const Run& run, const PointFrames& points) {
   ThreeDSize size;
   if (options.surface)
     for (std::size_t i = 0; i < run.frames.time.size(); ++i)
@@ -152,22 +158,22 @@ ThreeDSize size_of_three_d(const ThreeDOptions& options, const Run& run, const P
   return size;
 }
 
-void check_three_d(const ThreeDOptions& options, const Run& run, const PointFrames& points) {
+void check_three_d(const ThreeDParts& options, const Run& run, const PointFrames& points, double most) {
   if (options.points && points.most_points() == 0)
-    throw DataError({"[postprocess.three_d] points = true",
+    throw DataError({"[postprocess] outputs has \"points\"",
                      "the run holds no points over time ([solve] point_frames = false, or no frame interval)",
                      "Run talus-solve with point_frames = true, or leave this out"});
   const ThreeDSize size = size_of_three_d(options, run, points);
   const auto words = fmt::format("3d/ will take about {:.3g} MB (surface {:.3g}, terrain {:.3g}, points {:.3g})",
                                  size.all(), size.surface, size.terrain, size.points);
-  if (size.all() > options.largest)
-    throw DataError({words, fmt::format("[postprocess.three_d] largest_MB = {:g}", options.largest),
-                     "Raise it, or leave points out"});
+  if (size.all() > most)
+    throw DataError({words, fmt::format("{:g} MB are allowed", most),
+                     "Leave points out of outputs in [postprocess], or take a larger frame_interval_s"});
   log_info(words);
 }
 
-Files write_three_d(const fs::path& folder, const ThreeDOptions& options, const Run& run, const PointFrames& points) {
-  if (!options.writes()) return {};
+Files write_three_d(const fs::path& folder, const ThreeDParts& options, const Run& run, const PointFrames& points) {
+  if (!options.any()) return {};
   const auto begun = std::chrono::steady_clock::now();
   auto results = ThreeDFiles(folder, options, run, points).write();
   log_info(fmt::format("{}: {:.1f} MB in {:.1f} s", folder.string(), megabytes_under(folder),

@@ -34,8 +34,11 @@ bool matches(const std::vector<std::string>& patterns, const std::string& path) 
 
 Writers::Writers() : all_(all_writers()) {}
 
-void Writers::describe(recipe::Visitor& v) {
-  for (const auto& writer : all_) writer->describe(v);
+std::vector<std::string_view> Writers::words() const {
+  std::vector<std::string_view> all;
+  for (const auto& writer : all_)
+    for (const std::string_view word : writer->words()) all.push_back(word);
+  return all;
 }
 
 void Writers::check(const Job& job) const {

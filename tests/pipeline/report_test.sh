@@ -32,7 +32,7 @@ test_stands_without_its_view_in_3d_where_there_is_no_webgl() {
 
 test_leaves_its_view_in_3d_out_on_request() {
   made
-  sed -i 's/^\[postprocess.survey\]/[postprocess.three_d]\nreport = false\n\n&/' recipe.toml
+  sed -i 's/^\[postprocess.survey\]/[postprocess]\noutputs = ["report"]\n\n&/' recipe.toml
   expect_exit 0 postprocess
   grep -q '"relief":false' out/report.html || fail "the page is to draw the view all the same"
 }
@@ -129,9 +129,9 @@ test_says_which_stage_left_nothing_about_itself() {
 
 test_is_left_out_on_request() {
   made
-  sed -i 's/^\[postprocess.survey\]/[postprocess]\nreport = false\n\n&/' recipe.toml
+  sed -i 's/^\[postprocess.survey\]/[postprocess]\noutputs = []\n\n&/' recipe.toml
   expect_exit 0 postprocess
-  [[ ! -e out/report.html ]] || fail "report = false, but the report of the run before is still there"
+  [[ ! -e out/report.html ]] || fail "not asked for, but the report of the run before is still there"
 }
 
 # frames FILE: how many there are, and how long they take.
@@ -146,8 +146,8 @@ test_animation_has_every_frame_and_lingers_on_the_last() {
   made
   local kind
   for kind in mp4 gif; do
-    sed -i '/^animation/d; /^\[postprocess\]$/d' recipe.toml
-    sed -i "s/^\[postprocess.survey\]/[postprocess]\nanimation = \"$kind\"\n\n&/" recipe.toml
+    sed -i '/^outputs/d; /^\[postprocess\]$/d' recipe.toml
+    sed -i "s/^\[postprocess.survey\]/[postprocess]\noutputs = [\"$kind\"]\n\n&/" recipe.toml
     expect_exit 0 postprocess
     grep -q "animation.$kind\$" stdout || fail "animation.$kind is not among the results"
     frames "out/animation.$kind"
@@ -160,7 +160,7 @@ test_animation_has_every_frame_and_lingers_on_the_last() {
 
 test_animation_asks_for_ffmpeg_where_it_is_missing() {
   made
-  sed -i 's/^\[postprocess.survey\]/[postprocess]\nanimation = "mp4"\n\n&/' recipe.toml
+  sed -i 's/^\[postprocess.survey\]/[postprocess]\noutputs = ["mp4"]\n\n&/' recipe.toml
   mkdir none
   PATH=$PWD/none expect_exit 3 postprocess
   expect_words 'ffmpeg was not found' 'apt-get install ffmpeg'

@@ -61,22 +61,11 @@ TEST_F(Program, scores_against_a_thickness_raster_named_in_the_recipe) {
   EXPECT_FALSE(score().contains("footprint_csi"));
 }
 
-TEST_F(Program, writes_zero_outside_the_domain_where_that_is_asked_for) {
-  test::write_run(out_ / "run.h5", test::small_run());
-  run_it();
-  EXPECT_TRUE(std::isnan(read_raster(out_ / "maps/deposit_thickness.tif").at(20, 1)));
-  recipe_ += "[postprocess]\nnodata_zero = true\n";
-  run_it();
-  EXPECT_EQ(read_raster(out_ / "maps/deposit_thickness.tif").at(20, 1), 0);
-  EXPECT_EQ(read_raster(out_ / "maps/peak_speed.tif").at(20, 1), 0);
-  EXPECT_TRUE(std::isnan(read_raster(out_ / "maps/arrival_time.tif").at(20, 1))) << "0 s would be an arrival";
-}
-
 TEST_F(Program, writes_aliases_for_avaframe_where_they_are_asked_for) {
   test::write_run(out_ / "run.h5", test::small_run());
   run_it();
   EXPECT_FALSE(fs::exists(out_ / "maps/avaframe"));
-  recipe_ += "[postprocess]\navaframe = true\navaframe_format = \"asc\"\n";
+  recipe_ += "[postprocess]\noutputs = [\"avaframe-asc\"]\n";
   run_it();
   EXPECT_EQ(std::distance(fs::directory_iterator(out_ / "maps/avaframe"), {}), 4);
   const auto is_alias = [](const fs::path& file) { return file.string().ends_with("_C_S_null_mpm_pft.asc"); };

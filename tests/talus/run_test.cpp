@@ -26,7 +26,7 @@ struct Bowl {
     write_grid("after.asc", 4);
     scratch.write("recipe.toml",
                   "[preprocess]\nbefore_dem = \"before.asc\"\nafter_dem = \"after.asc\"\n[preprocess.grid]\n"
-                  "layer_height_m = 2.0\n[solve]\nend_time_s = 1.0\n[postprocess]\nreport = false\n");
+                  "layer_height_m = 2.0\n[solve]\nend_time_s = 1.0\n[postprocess]\noutputs = []\n");
   }
   void write_grid(const std::string& name, double depth) const {
     std::ofstream file(scratch / name);

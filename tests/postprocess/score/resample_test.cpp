@@ -73,12 +73,9 @@ TEST(Resample, lowers_the_agreement_where_the_deposit_is_hardly_above_the_error)
   EXPECT_GT(spread_of(setting.draw().deposit_csi).mean, csi.mean) << "without a level of detection less is lost";
 }
 
-TEST(Resample, is_the_same_for_the_same_seed) {
+TEST(Resample, is_the_same_each_time) {
   auto setting = Setting(0.7, 30);
-  const auto once = setting.draw().deposit_csi;
-  EXPECT_EQ(once, setting.draw().deposit_csi);
-  setting.options.survey.resample_seed = 2;
-  EXPECT_NE(once, setting.draw().deposit_csi);
+  EXPECT_EQ(setting.draw().deposit_csi, setting.draw().deposit_csi);
 }
 
 TEST(Resample, takes_no_noise_far_away_for_run_out) {

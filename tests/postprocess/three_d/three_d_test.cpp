@@ -15,7 +15,7 @@ class ThreeD : public ::testing::Test {
  protected:
   ThreeD() { test::write_run(scratch_ / "run.h5", run_); }
 
-  std::vector<std::string> written(const ThreeDOptions& options) {
+  std::vector<std::string> written(const ThreeDParts& options) {
     std::vector<std::string> names;
     for (const auto& file : write_three_d(folder_, options, run_, PointFrames(scratch_ / "run.h5")))
       names.push_back(std::filesystem::relative(file, folder_).string());
@@ -27,7 +27,7 @@ class ThreeD : public ::testing::Test {
   const std::filesystem::path folder_ = scratch_ / "3d";
 };
 
-const ThreeDOptions all_of_it{.points = true};
+const ThreeDParts all_of_it{.points = true};
 
 TEST_F(ThreeD, writes_what_is_asked_for_and_names_what_to_open) {
   EXPECT_EQ(written(all_of_it), (std::vector<std::string>{"terrain.vtp", "surface.pvd", "points.pvd", "run.pvd"}));
@@ -61,12 +61,10 @@ TEST_F(ThreeD, says_its_size_beforehand_within_a_factor_of_four) {
 }
 
 TEST_F(ThreeD, more_than_is_allowed_is_refused_with_its_parts) {
-  ThreeDOptions options = all_of_it;
-  options.largest = 0.01;
   const std::string fault =
-      test::fault_of<DataError>([&] { check_three_d(options, run_, PointFrames(scratch_ / "run.h5")); });
+      test::fault_of<DataError>([&] { check_three_d(all_of_it, run_, PointFrames(scratch_ / "run.h5"), 0.01); });
   EXPECT_NE(fault.find("3d/ will take about"), std::string::npos) << fault;
-  EXPECT_NE(fault.find("largest_MB = 0.01"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("0.01 MB are allowed"), std::string::npos) << fault;
 }
 
 TEST_F(ThreeD, points_need_frames_of_points) {

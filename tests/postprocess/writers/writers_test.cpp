@@ -55,8 +55,8 @@ class Outputs : public ::testing::Test {
   test::Scratch scratch_;
   const fs::path out_ = scratch_ / "out";
   const std::string all_keys_ =
-      "avaframe = true\n[postprocess.three_d]\npoints = true\n[postprocess.intensity]\nguideline = \"swiss-flood\"\n"
-      "[postprocess.reach_cone]\nangle_deg = 20.0\n";
+      "outputs = [\"report\", \"surface\", \"terrain\", \"points\", \"avaframe-tif\"]\n[postprocess.intensity]\n"
+      "guideline = \"swiss-flood\"\n[postprocess.reach_cone]\nangle_deg = 20.0\n";
 };
 
 TEST_F(Outputs, have_unique_names_and_files_of_their_own) {
@@ -82,7 +82,7 @@ TEST_F(Outputs, of_an_earlier_run_that_are_no_longer_wanted_are_deleted) {
   scratch_.write("out/3d/mine.pvsm", "a state of ParaView");
   fs::create_directories(out_ / "3d" / "volumes");
   scratch_.write("out/3d/volumes/flow.0000.vdb", "of an earlier version");
-  write(test::small_run(), "report = false\n[postprocess.three_d]\nsurface = false\nterrain = false\n");
+  write(test::small_run(), "outputs = []\n");
   const auto left = files();
   for (const char* name : {"report.html", "gauges.csv", "maps/intensity.tif", "maps/reach_cone.qml"})
     EXPECT_FALSE(left.contains(name)) << name;
