@@ -31,24 +31,17 @@ spacing_m = 1.0
 layer_height_m = {layer}
 points_per_cell = [2, 2, 2]
 [preprocess.laboratory]
-columns = 36
-rows = 16
-slope_x = {slope}
-slope_y = 0.05
+cells = [36, 16]
+corner_m = [0.0, 0.0, 0.0]
+slope = [{slope}, 0.05]
 [[preprocess.box]]
 name = "upper"
-west_m = 20.0
-east_m = 24.0
-south_m = 5.0
-north_m = 11.0
+extent_m = [20.0, 5.0, 24.0, 11.0]
 bottom_m = 0.0
 top_m = 3.0
 [[preprocess.box]]
 name = "lower"
-west_m = 16.0
-east_m = 20.0
-south_m = 5.0
-north_m = 11.0
+extent_m = [16.0, 5.0, 20.0, 11.0]
 bottom_m = 0.0
 top_m = 3.0
 """

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -82,6 +83,27 @@ void choice(Visitor& v, std::string_view key, Enum& value,
   }
   v.one_of(key, index, words, help);
   value = values.at(static_cast<std::size_t>(index));
+}
+
+/// A list as long as `parts`, which are its items. A list of another length makes them NaN (of integers the least
+/// number), and is refused by `place`.
+template <class T>
+void fixed_list(Visitor& v, std::string_view key, const std::vector<T*>& parts, Range range, std::string_view help,
+                const std::string& place) {
+  using Limits = std::numeric_limits<T>;
+  const T none = Limits::has_quiet_NaN ? Limits::quiet_NaN() : Limits::min();
+  std::vector<T> values;
+  for (const T* part : parts) values.push_back(*part);
+  if constexpr (std::is_same_v<T, int>) {
+    v.integers(key, values, range, help);
+  } else {
+    v.numbers(key, values, range, help);
+  }
+  const bool fits = values.size() == parts.size();
+  for (std::size_t i = 0; i < parts.size(); ++i) *parts[i] = fits ? values[i] : none;
+  const bool known = *parts[0] == *parts[0] && *parts[0] != Limits::min();
+  v.needs(known, {place + " " + std::string(key) + " is too long or too short",
+                  "it has " + std::to_string(parts.size()) + " items: " + std::string(help), "Give as many"});
 }
 
 /// A sub-table [..key], whose keys options.describe(v, others...) declares; `others` is what needs() look at besides,

@@ -100,9 +100,8 @@ def sand(cell):
     columns_of = lambda length: max(8, math.ceil(length / cell - 1e-9))
     return {
         "preprocess": {
-            "laboratory": {"columns": columns_of(1.35), "rows": 8, "west_m": -4 * cell, "south_m": -4 * cell},
-            "box": [{"name": "sand", "west_m": 0.0, "east_m": 0.09, "south_m": 0.0, "north_m": cell, "bottom_m": 0.0,
-                     "top_m": 0.63}],
+            "laboratory": {"cells": [columns_of(1.35), 8], "corner_m": [-4 * cell, -4 * cell, 0.0]},
+            "box": [{"name": "sand", "extent_m": [0.0, 0.0, 0.09, cell], "bottom_m": 0.0, "top_m": 0.63}],
             "grid": {"points_per_cell": [3, 3, 3]},
         },
         "solve": {"point_frames": False, "frame_interval_s": 1.5},
@@ -141,9 +140,8 @@ STEPS = [
 SLOPE = math.radians(20)
 SLAB = Scene("slab", "tests/validation/B1/recipe.toml", 1, 0.5, 1e8, {
     "preprocess": {
-        "laboratory": {"columns": 80, "rows": 50, "slope_x": -math.tan(SLOPE)},
-        "box": [{"name": "slab", "west_m": 10.0, "east_m": 70.0, "south_m": 10.0, "north_m": 40.0, "bottom_m": 0.0,
-                 "top_m": 2.0}],
+        "laboratory": {"cells": [80, 50], "slope": [-math.tan(SLOPE), 0.0]},
+        "box": [{"name": "slab", "extent_m": [10.0, 10.0, 70.0, 40.0], "bottom_m": 0.0, "top_m": 2.0}],
     },
     "solve": {
         "end_time_s": 600.0, "history_interval_s": 10.0, "frame_interval_s": 600.0, "point_frames": False,

@@ -38,17 +38,18 @@ void need_no_other_way(recipe::Visitor& v, const Options& o) {
   exclude(!o.release.empty(), "[[preprocess.release]]", two_ways, choose);
   exclude(!o.working_crs.empty(), "working_crs", "a laboratory lies in local coordinates", "Leave it out");
   exclude(!o.grid.extent.empty(), "grid.extent_m", "there is no elevation model to crop",
-          "Use laboratory.west_m, south_m, columns and rows");
+          "Use cells and corner_m of the laboratory");
 }
 
 }  // namespace
 
 void LaboratoryOptions::describe(recipe::Visitor& v, const Options& all) {
   const bool ignored = !all.in_laboratory();
-  v.integer("columns", columns, recipe::not_negative, "cells from west to east; 0 = no laboratory");
-  v.integer("rows", rows, recipe::not_negative, "cells from south to north");
+  const std::string place = "[preprocess.laboratory]";
+  recipe::fixed_list<int>(v, "cells", {&columns, &rows}, recipe::not_negative,
+                          "from west to east, from south to north; [0, 0] = no laboratory", place);
   need_no_other_way(v, all);
-  v.needs(ignored || has_cells(), fault(fmt::format("laboratory.columns = {}, rows = {}", columns, rows),
+  v.needs(ignored || has_cells(), fault(fmt::format("laboratory.cells = [{}, {}]", columns, rows),
                                         "both must be positive", "Give the number of cells along x and y"));
   v.needs(ignored || all.grid.spacing > 0,
           fault("grid.spacing_m is not given", "a laboratory has no elevation model to take it from",
@@ -56,19 +57,17 @@ void LaboratoryOptions::describe(recipe::Visitor& v, const Options& all) {
   v.needs(ignored || !all.box.empty() || all.no_release,
           fault("a laboratory without [[preprocess.box]]", "nothing would move",
                 "Give at least one box of material, or no_release = true with [[solve.inflow]]"));
-  v.number("west_m", west, recipe::any, "western edge");
-  v.number("south_m", south, recipe::any, "southern edge");
-  v.number("ground_m", ground, recipe::any, "elevation of the ground at the south-western corner");
-  v.number("slope_x", slope_x, recipe::any, "rise of the ground per metre towards the east");
-  v.number("slope_y", slope_y, recipe::any, "rise of the ground per metre towards the north");
+  recipe::fixed_list<double>(v, "corner_m", {&west, &south, &ground}, recipe::any,
+                             "south-western corner: easting, northing, elevation of the ground", place);
+  recipe::fixed_list<double>(v, "slope", {&slope_x, &slope_y}, recipe::any,
+                             "rise of the ground per metre towards the east and the north", place);
 }
 
 void BoxOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "name of this box; empty = box-1, box-2, ...");
-  v.number("west_m", west, recipe::any, "western side");
-  v.number("east_m", east, recipe::any, "eastern side; a multiple of the points' spacing away");
-  v.number("south_m", south, recipe::any, "southern side");
-  v.number("north_m", north, recipe::any, "northern side");
+  recipe::fixed_list<double>(v, "extent_m", {&west, &south, &east, &north}, recipe::any,
+                             "[west, south, east, north]; a multiple of the points' spacing wide",
+                             "[[preprocess.box]]");
   v.number("bottom_m", bottom, recipe::not_negative, "lower side, above the ground");
   v.number("top_m", top, recipe::not_negative, "upper side, above the ground");
   v.optional_number("top_east_m", top_east, recipe::not_negative,
@@ -76,8 +75,8 @@ void BoxOptions::describe(recipe::Visitor& v) {
 }
 
 std::array<BoxSide, 3> sides_of(const BoxOptions& b) {
-  return {{{"west_m", "east_m", b.west, b.east},
-           {"south_m", "north_m", b.south, b.north},
+  return {{{"west", "east", b.west, b.east},
+           {"south", "north", b.south, b.north},
            {"bottom_m", "top_m", b.bottom, std::max(b.top, b.top_east.value_or(b.top))}}};
 }
 

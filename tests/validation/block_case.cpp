@@ -27,12 +27,12 @@ Overrides overrides_of(const Incline& c) {
   const double slope = std::tan(c.angle * degree), x = std::cos(c.direction * degree),
                y = std::sin(c.direction * degree);
   const double west = std::floor(27 - 14 * x), south = std::floor(27 - 14 * y);  // 6 m square, uphill of the middle
-  return {{"preprocess.laboratory.slope_x", -slope * x},
-          {"preprocess.laboratory.slope_y", -slope * y},
-          {"preprocess.box[0].west_m", west},
-          {"preprocess.box[0].east_m", west + 6},
-          {"preprocess.box[0].south_m", south},
-          {"preprocess.box[0].north_m", south + 6},
+  return {{"preprocess.laboratory.slope[0]", -slope * x},
+          {"preprocess.laboratory.slope[1]", -slope * y},
+          {"preprocess.box[0].extent_m[0]", west},
+          {"preprocess.box[0].extent_m[2]", west + 6},
+          {"preprocess.box[0].extent_m[1]", south},
+          {"preprocess.box[0].extent_m[3]", south + 6},
           {"preprocess.box[0].top_m", static_cast<double>(c.layers)},
           {"solve.base.friction_angle_deg", c.friction}};
 }

@@ -150,11 +150,11 @@ void paper_table(Bench& bench, Chart& profile) {
 Overrides refined_column(int level, const char* shape, int per_cell) {
   const double h = 50 / std::pow(2, level);
   Overrides o{{"preprocess.grid.spacing_m", h},
-              {"preprocess.laboratory.west_m", -3.5 * h},
+              {"preprocess.laboratory.corner_m[0]", -3.5 * h},
               {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, per_cell)},
-              {"preprocess.laboratory.south_m", -3.5 * h},
-              {"preprocess.box[0].east_m", h},
-              {"preprocess.box[0].north_m", h},
+              {"preprocess.laboratory.corner_m[1]", -3.5 * h},
+              {"preprocess.box[0].extent_m[2]", h},
+              {"preprocess.box[0].extent_m[3]", h},
               {"solve.shape", words(shape)}};
   o.push_back({"solve.wall[1].position_m", h});
   o.push_back({"solve.wall[3].position_m", h});

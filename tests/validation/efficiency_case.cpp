@@ -57,8 +57,8 @@ std::vector<Scheme> schemes() {
 }
 
 Overrides thick(int cells, int steps) {
-  return {{"preprocess.laboratory.rows", whole(cells + 7)},
-          {"preprocess.box[0].north_m", cells * h},
+  return {{"preprocess.laboratory.cells[1]", whole(cells + 7)},
+          {"preprocess.box[0].extent_m[3]", cells * h},
           {"solve.wall[2].position_m", cells * h},
           {"solve.end_time_s", steps * step}};
 }

@@ -32,11 +32,11 @@ void note_effort(Bench& bench, const Outcome& o) {
 /// The slope of D1 in cells of this width [m].
 Overrides in_cells(double h) {
   return {{"preprocess.grid.spacing_m", h},
-          {"preprocess.laboratory.columns", whole(std::lround(32 / h) + 8)},
-          {"preprocess.laboratory.west_m", -3.5 * h},
-          {"preprocess.laboratory.south_m", -2.5 * h},
-          {"preprocess.box[0].north_m", h},
-          {"preprocess.box[1].north_m", h},
+          {"preprocess.laboratory.cells[0]", whole(std::lround(32 / h) + 8)},
+          {"preprocess.laboratory.corner_m[0]", -3.5 * h},
+          {"preprocess.laboratory.corner_m[1]", -2.5 * h},
+          {"preprocess.box[0].extent_m[3]", h},
+          {"preprocess.box[1].extent_m[3]", h},
           {"solve.wall[2].position_m", h}};
 }
 

@@ -232,10 +232,10 @@ Overrides dam_scene(const Way& way, double layer) {
   const double cell = dam_aspect * layer;
   return {{"preprocess.grid.spacing_m", cell},
           {"preprocess.grid.layer_height_m", layer},
-          {"preprocess.laboratory.columns", whole(std::lround(100 / cell) + 8)},
-          {"preprocess.laboratory.west_m", -54 - 3.5 * cell},
-          {"preprocess.laboratory.south_m", -3.5 * cell},
-          {"preprocess.box[0].north_m", cell},
+          {"preprocess.laboratory.cells[0]", whole(std::lround(100 / cell) + 8)},
+          {"preprocess.laboratory.corner_m[0]", -54 - 3.5 * cell},
+          {"preprocess.laboratory.corner_m[1]", -3.5 * cell},
+          {"preprocess.box[0].extent_m[3]", cell},
           {"solve.mapping", words(way.mapping)},
           {"solve.integrator", words(way.integrator)},
           {"solve.wall[1].position_m", cell}};

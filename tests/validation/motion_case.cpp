@@ -59,9 +59,9 @@ void free_fall(Bench& bench) {
   for (const char* integrator : {"newmark", "explicit"}) {
     const Outcome o = bench.run(fmt::format("free fall, {}", integrator),
                                 {{"solve.integrator", words(integrator)},
-                                 {"preprocess.laboratory.columns", whole(24)},
-                                 {"preprocess.laboratory.rows", whole(24)},
-                                 {"preprocess.laboratory.south_m", -6.25},
+                                 {"preprocess.laboratory.cells[0]", whole(24)},
+                                 {"preprocess.laboratory.cells[1]", whole(24)},
+                                 {"preprocess.laboratory.corner_m[1]", -6.25},
                                  {"preprocess.box[0].bottom_m", 10.0},
                                  {"preprocess.box[0].top_m", 12.0},
                                  {"solve.transfer", words("apic")},
@@ -106,9 +106,9 @@ void free_fall(Bench& bench) {
 void patch_test(Bench& bench) {
   for (const long points : {2L, 3L, 4L}) {
     Overrides overrides{{"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, points)},
-                        {"preprocess.box[0].east_m", 2.0},
+                        {"preprocess.box[0].extent_m[2]", 2.0},
                         {"preprocess.box[0].top_m", 2.0},
-                        {"preprocess.laboratory.columns", whole(14)},
+                        {"preprocess.laboratory.cells[0]", whole(14)},
                         {"solve.integrator", words("quasi-static")},
                         {"solve.shape", words("linear")},
                         {"solve.gravity_m_s2", std::vector<double>{0, 0, 0}},

@@ -51,16 +51,23 @@ toml::table& descend(toml::table& from, const Step& step, const std::string& pat
 
 struct Assign {
   toml::table& table;
-  const std::string& key;
+  const Step& step;
   template <class T>
   void operator()(const T& value) const {
-    table.insert_or_assign(key, value);
+    if (step.item < 0) {
+      table.insert_or_assign(step.key, value);
+    } else {
+      toml::array* list = table[step.key].as_array();
+      if (list == nullptr || static_cast<std::size_t>(step.item) >= list->size())
+        throw std::runtime_error("recipe key " + step.key + ": no such item");
+      list->replace(list->begin() + step.item, value);
+    }
   }
   template <class T>
   void operator()(const std::vector<T>& values) const {
     toml::array array;
     for (const T& value : values) array.push_back(value);
-    table.insert_or_assign(key, array);
+    table.insert_or_assign(step.key, array);
   }
 };
 
@@ -86,7 +93,7 @@ std::string recipe_with(const std::filesystem::path& base, const Overrides& over
     const auto steps = steps_of(path);
     toml::table* table = &recipe;
     for (std::size_t s = 0; s + 1 < steps.size(); ++s) table = &descend(*table, steps[s], path);
-    std::visit(Assign{*table, steps.back().key}, value);
+    std::visit(Assign{*table, steps.back()}, value);
   }
   std::ostringstream text;
   text << recipe << '\n';

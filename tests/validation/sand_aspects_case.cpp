@@ -98,18 +98,15 @@ Overrides round_column(const Sand& s) {
   const long columns = std::lround(reach / s.h) + 8;
   Overrides all{{"preprocess.grid.spacing_m", s.h},
                 {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, s.per_cell)},
-                {"preprocess.laboratory.columns", whole(columns)},
-                {"preprocess.laboratory.rows", whole(columns)},
-                {"preprocess.laboratory.west_m", -3.5 * s.h},
-                {"preprocess.laboratory.south_m", -3.5 * s.h}};
+                {"preprocess.laboratory.cells[0]", whole(columns)},
+                {"preprocess.laboratory.cells[1]", whole(columns)},
+                {"preprocess.laboratory.corner_m[0]", -3.5 * s.h},
+                {"preprocess.laboratory.corner_m[1]", -3.5 * s.h}};
   for (int n = 0; n < strips; ++n) {
-    const double y = (n + 0.5) / strips;
+    const double y = (n + 0.5) / strips, east = wide * std::round(strips * std::sqrt(1 - y * y));
     const std::string box = fmt::format("preprocess.box[{}].", n);
     all = all + Overrides{{box + "name", words(fmt::format("strip {}", n + 1))},
-                          {box + "west_m", 0.0},
-                          {box + "east_m", wide * std::round(strips * std::sqrt(1 - y * y))},
-                          {box + "south_m", n * wide},
-                          {box + "north_m", (n + 1) * wide},
+                          {box + "extent_m", std::vector<double>{0, n * wide, east, (n + 1) * wide}},
                           {box + "bottom_m", 0.0},
                           {box + "top_m", s.height}};
   }

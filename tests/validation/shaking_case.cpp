@@ -48,7 +48,7 @@ std::filesystem::path written(const Bench& bench, const Shake& shake) {
 
 Outcome shaken(Bench& bench, const ShakenPlane& plane, const Shake& shake, const char* integrator) {
   return bench.run(fmt::format("{}, {:g} deg, bed {:g} deg, {}", shake.name, plane.angle, plane.friction, integrator),
-                   {{"preprocess.laboratory.slope_x", -std::tan(ShakenPlane::radians(plane.angle))},
+                   {{"preprocess.laboratory.slope[0]", -std::tan(ShakenPlane::radians(plane.angle))},
                     {"solve.base.friction_angle_deg", plane.friction},
                     {"solve.integrator", words(integrator)},
                     {"solve.end_time_s", shake.end},

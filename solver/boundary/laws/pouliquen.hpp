@@ -11,7 +11,8 @@
 
 namespace talus {
 
-/// Friction by depth and Froude number (Pouliquen & Forterre 2002).
+/// Friction by depth and Froude number (Pouliquen & Forterre 2002). The Froude number beta_* of the slowest steady flow
+/// is beta, that of h_stop without Gamma.
 struct Pouliquen : BasalLaw {
   static constexpr std::string_view name = "pouliquen";
   static constexpr bool asks_column = true;
@@ -24,7 +25,6 @@ struct Pouliquen : BasalLaw {
     double layer_length = 0.00065;   ///< L [m]
     double flow_rule_slope = 0.136;  ///< beta [-]
     double flow_rule_offset = 0;     ///< Gamma [-]
-    double slowest_froude = 0.136;   ///< beta_* [-]
 
     /// The method declares the keys with defaults, help and, where the law is chosen, what they need of one another.
     void describe(recipe::Visitor& v, const LawTable& table) {
@@ -40,8 +40,6 @@ struct Pouliquen : BasalLaw {
       v.number("flow_rule_slope", flow_rule_slope, recipe::positive,
                "pouliquen: beta of the steady flow Fr = beta h / h_stop - Gamma");
       v.number("flow_rule_offset", flow_rule_offset, recipe::not_negative, "pouliquen: Gamma of that flow");
-      v.number("slowest_froude", slowest_froude, recipe::positive,
-               "pouliquen: beta_*, Froude number of the slowest steady flow");
       if (table.chosen == name) check_numbers(v, table.name);
     }
 
@@ -55,25 +53,19 @@ struct Pouliquen : BasalLaw {
           stop_angle <= start_angle,
           {table + " start_angle_deg = " + shortest(start_angle) + " is below stop_angle_deg = " + shortest(stop_angle),
            "what rests would be held less than what stops", "Give theta_3 of theta_1 at least"});
-      v.needs(slowest_froude + flow_rule_offset >= flow_rule_slope * (1 - 1e-12),
-              {table + " slowest_froude = " + shortest(slowest_froude) + " and flow_rule_offset = " +
-                   shortest(flow_rule_offset) + " add up to less than flow_rule_slope = " + shortest(flow_rule_slope),
-               "the slowest steady flow would be thinner than h_stop, at which flows stop",
-               "Give slowest_froude of flow_rule_slope - flow_rule_offset at least"});
     }
   };
   /// Whether the law looks at a key.
   static bool uses(std::string_view key) {
     return key == "stop_angle_deg" || key == "steepest_angle_deg" || key == "start_angle_deg" ||
-           key == "layer_length_m" || key == "flow_rule_slope" || key == "flow_rule_offset" || key == "slowest_froude";
+           key == "layer_length_m" || key == "flow_rule_slope" || key == "flow_rule_offset";
   }
   /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
     return "pouliquen, " + six_digits(o.stop_angle) + ", " + six_digits(o.steepest_angle) + " and " +
            six_digits(o.start_angle) + " deg, L = " + six_digits(o.layer_length) +
-           " m, beta = " + six_digits(o.flow_rule_slope) + ", Gamma = " + six_digits(o.flow_rule_offset) +
-           ", beta_* = " + six_digits(o.slowest_froude);
+           " m, beta = " + six_digits(o.flow_rule_slope) + ", Gamma = " + six_digits(o.flow_rule_offset);
   }
   /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
@@ -94,13 +86,12 @@ struct Pouliquen : BasalLaw {
     n[resting] = borne(o.start_angle);
     n[length] = o.layer_length;
   }
-  enum Constant { slope, offset, slowest, density, constant_count };  ///< those of the scene
+  enum Constant { slope, offset, density, constant_count };  ///< those of the scene
   /// This function makes the numbers of the scene from the options of all laws.
   template <class All>
   static void constants(const All& o, const BedSetting& setting, double* c) {
     c[slope] = o.flow_rule_slope;
     c[offset] = o.flow_rule_offset;
-    c[slowest] = o.slowest_froude;
     c[density] = setting.density;
   }
 
@@ -110,11 +101,11 @@ struct Pouliquen : BasalLaw {
     const Real* c = n.everywhere;
     const Real depth = slip.load / c[density], wave = Real(sqrt(slip.normal_stress / c[density]));
     const Real froude = slip.speed > Real(0) ? slip.speed / wave : Real(0);  // infinite without weight
-    const Real at_least = froude > c[slowest] ? froude : c[slowest];
+    const Real at_least = froude > c[slope] ? froude : c[slope];
     const Real flowing = n[deep] + n[spread] / (Real(1) + depth * c[slope] / (n[length] * (at_least + c[offset])));
-    if (!(froude < c[slowest])) return flowing;
+    if (!(froude < c[slope])) return flowing;
     const Real start = n[resting] + n[spread] / (Real(1) + depth / n[length]);
-    return start + (flowing - start) * (froude / c[slowest]);
+    return start + (flowing - start) * (froude / c[slope]);
   }
 };
 

@@ -173,8 +173,8 @@ TEST(laboratory, refuses_a_box_that_the_points_would_not_fill) {
   o.box[0].east = 6.7;
   EXPECT_EQ(
       faults_of(o),
-      "[preprocess]: box 1: west_m to east_m is 3.2 m (it is no multiple of the points' spacing of 0.5 m, so that they "
-      "would not fill it). Take east_m = 6.5 or 7, or other grid.points_per_cell\n");
+      "[preprocess]: box 1: west to east is 3.2 m (it is no multiple of the points' spacing of 0.5 m, so that they "
+      "would not fill it). Take east = 6.5 or 7, or other grid.points_per_cell\n");
 }
 
 TEST(laboratory, refuses_boxes_without_extent_outside_the_grid_or_inside_one_another) {
@@ -186,7 +186,7 @@ TEST(laboratory, refuses_boxes_without_extent_outside_the_grid_or_inside_one_ano
   o.box[0].west = 0.5;
   EXPECT_EQ(
       faults_of(o),
-      "[preprocess]: box 1: west_m = 0.5, east_m = 6.5 (the grid reaches from 0 to 12 m, and points need an open cell "
+      "[preprocess]: box 1: west = 0.5, east = 6.5 (the grid reaches from 0 to 12 m, and points need an open cell "
       "around them). Add columns or rows, or move the box: a margin of three cells, and room for it to flow into\n");
   o = bench();
   o.box.push_back({"lid", 4, 5, 4, 5, 2, 3});
@@ -213,7 +213,19 @@ TEST(laboratory, refuses_what_belongs_to_the_other_ways) {
           "[preprocess]: working_crs is given with a laboratory (a laboratory lies in local coordinates). Leave it "
           "out\n"
           "[preprocess]: grid.extent_m is given with a laboratory (there is no elevation model to crop). Use "
-          "laboratory.west_m, south_m, columns and rows\n");
+          "cells and corner_m of the laboratory\n");
+}
+
+TEST(laboratory, refuses_lists_that_are_too_short) {
+  const test::Scratch scratch;
+  const recipe::Recipe recipe(scratch.write("recipe.toml",
+                                            "[preprocess.grid]\nspacing_m = 1.0\n[preprocess.laboratory]\n"
+                                            "cells = [8]\n[[preprocess.box]]\nextent_m = [1.0, 1.0, 2.0]\n"));
+  const std::string fault = test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); });
+  EXPECT_NE(fault.find("[preprocess.laboratory] cells is too long or too short (it has 2 items"), std::string::npos)
+      << fault;
+  EXPECT_NE(fault.find("[[preprocess.box]] extent_m is too long or too short (it has 4 items"), std::string::npos)
+      << fault;
 }
 
 TEST(laboratory, refuses_half_a_laboratory) {
@@ -222,7 +234,7 @@ TEST(laboratory, refuses_half_a_laboratory) {
   o.grid.spacing = 0;
   EXPECT_EQ(
       faults_of(o),
-      "[preprocess]: laboratory.columns = 12, rows = 0 (both must be positive). Give the number of cells along x and "
+      "[preprocess]: laboratory.cells = [12, 0] (both must be positive). Give the number of cells along x and "
       "y\n"
       "[preprocess]: grid.spacing_m is not given (a laboratory has no elevation model to take it from). Give the width "
       "of a cell in metres\n");

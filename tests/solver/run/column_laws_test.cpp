@@ -169,7 +169,7 @@ TEST_P(ColumnLaws, pouliquen_stops_what_is_thinner_than_h_stop) {
     if (times < 1) {
       EXPECT_LT(std::abs(froude), resting);
     } else {
-      EXPECT_GT(froude, 0.9 * g.o.base.slowest_froude);
+      EXPECT_GT(froude, 0.9 * g.o.base.flow_rule_slope);
     }
   }
 }
@@ -186,7 +186,7 @@ TEST_P(ColumnLaws, pouliquen_holds_what_rests_up_to_h_start) {
     if (times < 1) {
       EXPECT_LT(std::abs(froude), resting);
     } else {
-      EXPECT_GT(froude, 0.9 * g.o.base.slowest_froude);
+      EXPECT_GT(froude, 0.9 * g.o.base.flow_rule_slope);
     }
   }
 }

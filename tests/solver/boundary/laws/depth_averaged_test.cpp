@@ -80,7 +80,6 @@ TEST(Pouliquen, balances_a_slope_in_the_steady_flow_of_its_flow_rule) {
   for (const double gamma : {0.0, 0.77}) {
     b.o.flow_rule_offset = gamma;
     b.o.flow_rule_slope = gamma > 0 ? 0.63 : 0.136;
-    b.o.slowest_froude = b.o.flow_rule_slope;
     const auto f = some_bed<Pouliquen, FrictionLaws>(b.o);
     for (const double slope : {23.0, 26.0, 29.0}) {
       for (const double times : {2.5, 4.0, 20.0}) {
@@ -99,7 +98,7 @@ TEST(Pouliquen, holds_what_rests_up_to_h_start_and_what_flows_slowest_up_to_h_st
   for (const double slope : {23.0, 26.0, 29.0}) {
     EXPECT_NEAR(f.coefficient(f.uniform, column(b.h_start(slope), 0, slope)), tangent(slope), 1e-12);
     const double depth = b.h_stop(slope), wave = std::sqrt(9.81 * depth * std::cos(slope * std::numbers::pi / 180));
-    EXPECT_NEAR(f.coefficient(f.uniform, column(depth, b.o.slowest_froude * wave, slope)), tangent(slope), 1e-12);
+    EXPECT_NEAR(f.coefficient(f.uniform, column(depth, b.o.flow_rule_slope * wave, slope)), tangent(slope), 1e-12);
     EXPECT_GT(b.h_start(slope), b.h_stop(slope));
   }
 }
@@ -110,7 +109,7 @@ TEST(Pouliquen, falls_from_rest_to_the_slowest_flow_and_grows_from_there) {
   const double depth = 0.002, wave = std::sqrt(9.81 * depth);
   double before = f.coefficient(f.uniform, column(depth, 0));
   for (int n = 1; n <= 40; ++n) {
-    const double froude = b.o.slowest_froude * n / 20, mu = f.coefficient(f.uniform, column(depth, froude * wave));
+    const double froude = b.o.flow_rule_slope * n / 20, mu = f.coefficient(f.uniform, column(depth, froude * wave));
     EXPECT_EQ(mu < before, n <= 20) << "Froude number " << froude;
     EXPECT_LT(std::abs(mu - before), 0.004) << "without a jump";
     before = mu;
@@ -137,7 +136,6 @@ TEST(Pouliquen, refuses_numbers_that_contradict_one_another) {
   EXPECT_TRUE(chosen([](BaseOptions&) {}).empty());
   EXPECT_EQ(chosen([](BaseOptions& o) { o.steepest_angle = 20; }).size(), 1u);
   EXPECT_EQ(chosen([](BaseOptions& o) { o.start_angle = 20; }).size(), 1u);
-  EXPECT_EQ(chosen([](BaseOptions& o) { o.slowest_froude = 0.1; }).size(), 1u);
   EXPECT_TRUE(faults_of([](BaseOptions& o) { o.steepest_angle = 20; }).empty()) << "another law is chosen";
 }
 
