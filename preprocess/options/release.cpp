@@ -11,38 +11,40 @@
 
 namespace talus::preprocess {
 
-void ReleaseOptions::describe(recipe::Visitor& v, const std::string& place, bool needed) {
-  v.text("name", name, "name of this release; empty = release-1, release-2, ...");
+void ReleaseOptions::describe_thickness(recipe::Visitor& v, const std::string& place, bool needed) {
+  v.text("name", name, "its name; empty = release-1 or erodible-1, and so on");
   v.path("thickness_raster", thickness_raster, "raster of thickness [m]; or polygons, below");
   v.path("polygons", polygons, "vector file of polygons");
   v.needs(!needed || thickness_raster.empty() != polygons.empty(),
           fault(place + (polygons.empty() ? ": neither thickness_raster nor polygons is given"
                                           : ": thickness_raster and polygons are both given"),
                 "a release is one or the other", "Give one; several releases are several [[preprocess.release]]"));
+  v.number("thickness_m", thickness, recipe::not_negative,
+           "one thickness for all polygons; 0 = that of their attribute, of erodible layers \"thickness\"");
+  v.needs(!needed || thickness_raster.empty() || !(thickness > 0),
+          fault(fmt::format("{}: thickness_m = {} beside thickness_raster", place, thickness),
+                "the raster holds the thickness", "Leave one out"));
+}
+
+void ReleaseOptions::describe(recipe::Visitor& v, const std::string& place, bool needed) {
+  describe_thickness(v, place, needed);
   v.text("layer", layer, "layer of polygons; empty, or none of that name = the first");
   v.text("where", where, "which of the polygons, by their attributes: \"id = 12\"; empty = all");
   v.needs(!needed || where.empty() || !polygons.empty(),
           fault(place + ": where is given without polygons", "a raster of thickness has no attributes",
                 "Leave it out, or give the release by polygons"));
   v.text("attribute", attribute, "the polygons' attribute that holds the thickness [m]");
-  v.number("thickness_m", thickness, recipe::not_negative, "one thickness for all polygons; 0 = that of the attribute");
-  v.needs(!needed || thickness_raster.empty() || !(thickness > 0),
-          fault(fmt::format("{}: thickness_m = {} beside thickness_raster", place, thickness),
-                "the raster holds the thickness", "Leave one out"));
   v.needs(!needed || polygons.empty() || thickness != 0 || !attribute.empty(),
           fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
                 "Name the attribute that holds the thickness, or give thickness_m"));
-  recipe::choice(v, "direction", direction,
-                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
-                 "which way the thickness is measured");
-}
-
-void ReleaseOptions::describe_change(recipe::Visitor& v, const std::string& place, bool needed) {
   v.number("volume_factor", volume_factor, recipe::positive, "its thickness, and so its volume, times this");
   v.number("grow_m", grow, recipe::any, "the polygons grown by this on all sides; negative: shrunk");
   v.needs(!needed || grow == 0 || !polygons.empty(),
           fault(place + ": grow_m is given without polygons", "a raster of thickness has no outline to grow",
                 "Leave it out, or give the release by polygons"));
+  recipe::choice(v, "direction", direction,
+                 {{"vertical", Direction::vertical}, {"slope-normal", Direction::slope_normal}},
+                 "which way the thickness is measured");
 }
 
 void ErodibleOptions::describe(recipe::Visitor& v, const std::string& place, const Options& all) {
@@ -52,7 +54,7 @@ void ErodibleOptions::describe(recipe::Visitor& v, const std::string& place, con
           fault("erodible: lowering = true beside a raster or polygons, or without after_dem",
                 "the layer is the difference of two elevation models",
                 "Give before_dem and after_dem and nothing else, or leave lowering out"));
-  ReleaseOptions::describe(v, place, !all.in_laboratory() && !lowering);
+  describe_thickness(v, place, !all.in_laboratory() && !lowering);
 }
 
 void describe_layers(recipe::Visitor& v, Options& o) {
@@ -66,7 +68,6 @@ void describe_layers(recipe::Visitor& v, Options& o) {
                [&](ReleaseOptions& release, std::size_t item) {
                  const std::string place = fmt::format("release {}", item + 1);
                  release.describe(v, place, !o.in_laboratory());
-                 release.describe_change(v, place, !o.in_laboratory());
                  need_own_name(place, release.name);
                });
   recipe::list(

@@ -31,11 +31,13 @@ struct ReleaseOptions {
   /// The method declares the keys with defaults and help, and, where a thickness is `needed`, that one is given;
   /// messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place, bool needed);
-  /// Declares the keys by which an ensemble varies a release.
-  void describe_change(recipe::Visitor& v, const std::string& place, bool needed);
+
+ protected:
+  /// Declares the keys that an erodible layer has too.
+  void describe_thickness(recipe::Visitor& v, const std::string& place, bool needed);
 };
 
-/// One [[preprocess.erodible]]: a layer of ground, given as a release is, or all that was lowered outside the source.
+/// One [[preprocess.erodible]]: a layer of ground by a raster or polygons, or all that was lowered outside the source.
 struct ErodibleOptions : ReleaseOptions {
   bool lowering = false;
 

@@ -31,7 +31,6 @@ void LoadOptions::describe(recipe::Visitor& v) {
           {"[[solve.load]] box_m or force_N has the wrong number of values", "a box has six, a force three",
            "Give box_m = [west, east, south, north, bottom, top] and force_N = [east, north, up]"});
   v.number("ramp_s", ramp, recipe::not_negative, "time over which it grows to its full size");
-  v.number("to_s", to, recipe::not_negative, "it pulls until this time");
 }
 
 }  // namespace talus::solver

@@ -22,7 +22,6 @@ struct LoadOptions {
   std::vector<double> box = {0, 0, 0, 0, 0, 0};  ///< west, east, south, north [m], bottom, top above the ground [m]
   std::vector<double> force = {0, 0, 0};         ///< in all [N]
   double ramp = 0;                               ///< time over which it grows [s]
-  double to = 1e30;                              ///< it pulls until then [s]
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

@@ -33,7 +33,7 @@ struct Slope {
     }
     if (contacts > 0) scene.contacts.friction = {0.4};
     settings = make_settings(o, scene.grid).common;
-    settings.walls = {{.axis = 0, .position = 7.5, .from = 1, .to = 2}, {.axis = 2, .position = 6, .from = 0, .to = 9}};
+    settings.walls = {{.axis = 0, .position = 7.5, .to = 2}, {.axis = 2, .position = 6, .to = 9}};
   }
   Surroundings<double, CpuDevice, Linear> make(const ContactState& state = {}) const {
     return {CpuDevice::make(), scene, settings, state, 4};
@@ -43,11 +43,11 @@ struct Slope {
 TEST(Surroundings, have_the_walls_of_a_time_in_cells_from_the_first_node_and_the_datum) {
   const Slope slope(0);
   const auto surroundings = slope.make();
-  const Walls<double> early = surroundings.walls<double>(0.5), later = surroundings.walls<double>(1.5);
-  ASSERT_EQ(early.count, 1);
-  EXPECT_EQ(early.list[0].position, 2);  // 6 m over the datum of 4 m
-  ASSERT_EQ(later.count, 2);
-  EXPECT_EQ(later.list[0].position, 7);  // nodes stand half a cell from the map's edge
+  const Walls<double> early = surroundings.walls<double>(1.5), later = surroundings.walls<double>(2.5);
+  ASSERT_EQ(later.count, 1);
+  EXPECT_EQ(later.list[0].position, 2);  // 6 m over the datum of 4 m
+  ASSERT_EQ(early.count, 2);
+  EXPECT_EQ(early.list[0].position, 7);  // nodes stand half a cell from the map's edge
 }
 
 TEST(Surroundings, have_contact_points_where_there_are_obstacles) {
