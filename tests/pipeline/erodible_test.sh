@@ -55,7 +55,7 @@ test_lowering_needs_two_models() {
 test_raster_that_the_law_does_not_use() {
   scene
   grid xi.asc 500
-  sed -i 's/^\[preprocess.grid\]/[[preprocess.bed.raster]]\nnumber = "turbulence_m_s2"\nfile = "xi.asc"\n\n[preprocess.grid]/' recipe.toml
+  printf '\n[[preprocess.bed.raster]]\nnumber = "turbulence_m_s2"\nfile = "xi.asc"\n' >>recipe.toml
   expect_exit 0 preprocess
   expect_exit 2 solve
   expect_error 'talus-solve: [preprocess.bed] turbulence_m_s2 is given, but [solve.base] law does not use it ' \
