@@ -123,6 +123,18 @@ test_a_line_over_120_columns_is_named() {
     fail "said: $(printf '%s\n' fits.sh wide.md | lines_over 120)"
 }
 
+# The code of the page on extension is that of sources which tests compile and run.
+test_code_of_the_page_on_extension_is_tested() {
+  cd "$TALUS_SOURCE"
+  python3 - docs/how-to/extend.md tests/postprocess/writers/profile.cpp tests/solver/boundary/laws/speed_power.hpp \
+    <<'END' || fail "docs/how-to/extend.md shows code that no test runs"
+import re, sys
+page, *sources = [open(name).read() for name in sys.argv[1:]]
+blocks = re.findall(r"```(?:cpp|python)\n(.*?)```", page, re.S)
+sys.exit(sorted(blocks) != sorted(sources))
+END
+}
+
 test_licence_is_the_gpl_3() {
   cd "$TALUS_SOURCE"
   grep -q 'GNU GENERAL PUBLIC LICENSE' LICENSE && grep -q 'Version 3, 29 June 2007' LICENSE ||

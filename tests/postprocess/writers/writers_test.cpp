@@ -9,9 +9,13 @@
 #include <set>
 
 #include "postprocess/postprocess.hpp"
+#include "postprocess/writers/job.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
+
+std::shared_ptr<Writer> profile_writer();  // of docs/how-to/extend.md
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,6 +93,23 @@ TEST_F(Outputs, of_an_earlier_run_that_are_no_longer_wanted_are_deleted) {
   EXPECT_FALSE(fs::exists(out_ / "maps" / "avaframe"));
   EXPECT_EQ(test::names_in(out_ / "3d"), std::vector<std::string>{"mine.pvsm"});
   EXPECT_TRUE(left.contains("score.json"));
+}
+
+TEST_F(Outputs, of_the_page_on_extension_are_written) {
+  const auto profile = profile_writer();
+  Job job{.run = test::small_run(), .out = out_};
+  EXPECT_FALSE(profile->wanted(job));
+  job.options.outputs = {"profile"};
+  EXPECT_TRUE(profile->wanted(job));
+  EXPECT_THROW(profile->check(job), DataError) << "there is no thalweg";
+  const MapGrid& grid = job.run.maps.grid;
+  const double y = grid.south + 1.5 * grid.cell, x = grid.west + 1.5 * grid.cell;
+  job.thalweg = {.line = {{x, y}, {x + grid.cell, y}}, .distance = {0, grid.cell}};
+  profile->check(job);
+  const auto values = sample_along(job.thalweg, grid, job.run.maps.deposit_thickness);
+  EXPECT_EQ(profile->write(job), Files{out_ / "profile.csv"});
+  EXPECT_EQ(test::text_of(out_ / "profile.csv"),
+            fmt::format("distance_m,deposit_m\n0.00,{:.3f}\n{:.2f},{:.3f}\n", values[0], grid.cell, values[1]));
 }
 
 TEST_F(Outputs, patterns_do_not_reach_into_folders) {
