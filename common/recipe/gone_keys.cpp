@@ -80,8 +80,6 @@ constexpr GoneKeys gone_keys[] = {
     {"solve.implicit.preconditioner", "Leave it out; it is the 3 x 3 block of each node"},
     {"solve.implicit.step_cuts", "Leave it out; a step is halved 8 times at most"},
     {"solve.implicit.tangent", "Leave it out; the tangent is symmetric, with the yield stress held"},
-    {"solve.load.from_s", "Give ramp_s; loads pull from the start"},
-    {"solve.load.to_s", "Leave it out; loads pull to the end"},
     {"solve.material.fast_friction_rise", "Leave it out; it is 0.05 (Barker & Gray 2017)"},
     {"solve.material.stiffness_check", "Run an error budget, which varies the modulus"},
     {"solve.material.stiffness_strain", "Leave it out; accuracy of [solve] settles it"},

@@ -151,7 +151,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
                    .step = step,
                    .accelerates = !knows && !midway,
                    .backward_euler = !knows && midway,
-                   .loads = loads_.upload(clock.time + step),
+                   .loads = loads_.upload(clock.time, clock.time + step),
                    .shaking = shaking_of(clock, step),
                    .shaking_before = knows ? clock.ground_acceleration() : shaking_of(clock, step)});
       const NewtonReport found = step_.solve();

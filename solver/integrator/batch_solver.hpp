@@ -51,7 +51,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     clock.alarms.halt = clock.alarms.request = running;
     clock_.write(clock);
     walls_ = this->template set_walls<Real>(clock.time);
-    loads_now_ = loads_.upload(clock.time);
+    loads_now_ = loads_.upload(clock.time, clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     clock_.lend();
     clock_.pass_in();

@@ -20,11 +20,11 @@ class DeviceLoads {
   DeviceLoads(const Device& device, std::vector<Load> loads, std::vector<double> volumes)
       : loads_(std::move(loads)), volumes_(std::move(volumes)), densities_(device) {}
 
-  /// The method uploads the force per volume of every load at a time [N/m3], for kernels until the next call; null when
-  /// there are no loads.
-  const Vec3<double>* upload(double time) {
+  /// The method uploads the force per volume of every load at a time in a step that began at `begin` [N/m3], for
+  /// kernels until the next call; null when there are no loads.
+  const Vec3<double>* upload(double begin, double time) {
     if (volumes_.empty()) return nullptr;
-    densities_.upload(load_densities(loads_, volumes_, time));
+    densities_.upload(load_densities(loads_, volumes_, begin, time));
     return densities_.data();
   }
   /// Whether a load jumps at a time.

@@ -3,6 +3,8 @@
 // Gravity, the velocity at the start, and forces on parts of the mass.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -14,7 +16,20 @@ struct GravityOptions {
   std::vector<double> gravity = {0, 0, -9.81};       ///< [m/s2]
   std::vector<double> initial_velocity = {0, 0, 0};  ///< [m/s]
   /// The method declares the keys with defaults and help.
-  void describe(recipe::Visitor& v);
+  void describe(recipe::Visitor& v) {
+    v.numbers("gravity_m_s2", gravity, recipe::any, "gravity: east, north, up");
+    need_three(v, "gravity_m_s2", gravity);
+    v.numbers("initial_velocity_m_s", initial_velocity, recipe::any,
+              "velocity of the whole mass at the start: east, north, up");
+    need_three(v, "initial_velocity_m_s", initial_velocity);
+  }
+
+ private:
+  static void need_three(recipe::Visitor& v, const char* key, const std::vector<double>& values) {
+    v.needs(values.size() == 3,
+            {fmt::format("[solve] {} has {} numbers", key, values.size()), "it is a vector: east, north, up",
+             fmt::format("Give three: {} = [0.0, 0.0, 0.0]", key)});
+  }
 };
 
 /// The keys of [[solve.load]]: a force on the points that start inside a box.
@@ -22,8 +37,19 @@ struct LoadOptions {
   std::vector<double> box = {0, 0, 0, 0, 0, 0};  ///< west, east, south, north [m], bottom, top above the ground [m]
   std::vector<double> force = {0, 0, 0};         ///< in all [N]
   double ramp = 0;                               ///< time over which it grows [s]
+  double from = 0, to = 1e30;                    ///< [s]
   /// The method declares the keys with defaults and help.
-  void describe(recipe::Visitor& v);
+  void describe(recipe::Visitor& v) {
+    v.numbers("box_m", box, recipe::any,
+              "west, east, south, north, bottom, top (the last two above the ground): points starting there");
+    v.numbers("force_N", force, recipe::any, "force on them in all: east, north, up");
+    v.needs(box.size() == 6 && force.size() == 3,
+            {"[[solve.load]] box_m or force_N has the wrong number of values", "a box has six, a force three",
+             "Give box_m = [west, east, south, north, bottom, top] and force_N = [east, north, up]"});
+    v.number("ramp_s", ramp, recipe::not_negative, "time over which it grows to its full size");
+    v.number("from_s", from, recipe::not_negative, "it pulls from this time");
+    v.number("to_s", to, recipe::not_negative, "to this time");
+  }
 };
 
 }  // namespace talus::solver

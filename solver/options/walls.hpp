@@ -3,6 +3,8 @@
 // Plane walls and gates.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -25,10 +27,24 @@ struct WallOptions {
   double speed = 0;           ///< along the axis [m/s]
   double to = 1e30;           ///< it stands until then [s]
   /// The method declares the keys with defaults and help.
-  void describe(recipe::Visitor& v);
+  void describe(recipe::Visitor& v) {
+    recipe::choice(v, "axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}, "normal of the wall");
+    v.number("position_m", position, recipe::any, "map coordinate, or elevation");
+    recipe::choice(v, "material_is", material_is, {{"above", Side::above}, {"below", Side::below}},
+                   "where the material lies: at larger (above) or smaller (below) coordinates");
+    recipe::choice(v, "kind", kind,
+                   {{"roller", WallKind::roller}, {"fixed", WallKind::fixed}, {"frictional", WallKind::frictional}},
+                   "roller: no motion along the axis; fixed: none at all; frictional: one-sided, with friction");
+    v.number("friction_angle_deg", friction_angle, recipe::Range{0, 90, false, true}, "frictional: friction angle");
+    v.number("speed_m_s", speed, recipe::any, "velocity of the wall along its axis");
+    v.number("to_s", to, recipe::not_negative, "the wall goes at this time (a gate)");
+  }
 };
 
 /// This function declares that there are as many walls as kernels hold, at most.
-void need_few(recipe::Visitor& v, const std::vector<WallOptions>& walls);
+inline void need_few(recipe::Visitor& v, const std::vector<WallOptions>& walls) {
+  v.needs(walls.size() <= most_walls, {fmt::format("[[solve.wall]] is given {} times", walls.size()),
+                                       fmt::format("at most {} walls fit", most_walls), "Leave some out"});
+}
 
 }  // namespace talus::solver

@@ -22,6 +22,7 @@ Schedule::Schedule(const SolveOptions& options, std::vector<double> pulses)
       end_time_(options.end_time),
       pulses_(std::move(pulses)) {
   for (const WallOptions& wall : options.walls) changes_.push_back(wall.to);
+  for (const LoadOptions& load : options.loads) changes_.insert(changes_.end(), {load.from, load.to});
   if (options.shaking.acts()) changes_.push_back(options.shaking.start);
 }
 

@@ -42,7 +42,7 @@ PlaneWall make_wall(const WallOptions& o) {
           .to = o.to};
 }
 
-Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp = o.ramp}; }
+Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp = o.ramp, .from = o.from, .to = o.to}; }
 
 SeparationSettings make_separation(const SolveOptions& o, const GridShape& grid) {
   return {.kind = o.base.separation, .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};

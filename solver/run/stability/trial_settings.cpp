@@ -31,7 +31,11 @@ SolverSettings static_settings(const SolveOptions& options, const Scene& scene, 
   s.common.separation = {};
   s.common.damping = 0;
   for (PlaneWall& wall : s.common.walls) wall.to = 1e30;
-  for (Load& load : s.common.loads) load.ramp = 1;
+  std::erase_if(s.common.loads, [](const Load& load) { return load.from > 0; });
+  for (Load& load : s.common.loads) {
+    load.ramp = 1;
+    load.to = 1e30;
+  }
   s.implicit.dynamic = false;
   s.implicit.step = 1;
   s.implicit.step_cuts = 0;

@@ -5,8 +5,6 @@
 #include "common/gis/polygons.hpp"
 #include "common/gis/read_raster.hpp"
 
-#include <gdal_priv.h>
-
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -164,19 +162,20 @@ TEST(survey, says_so_when_one_model_looks_like_feet) {
   EXPECT_NE(fault.find("Declare it in after_dem: gdal_edit.py -units foot"), std::string::npos) << fault;
 }
 
-/// Heights of a scene in another unit than the file says, which is none.
-void rewrite_in(test::Scene& scene, double before_metres, double after_metres) {
-  Raster before = scene.before, after = scene.after;
-  for (double& z : before.values) z /= before_metres;
-  for (double& z : after.values) z /= after_metres;
-  scene.rewrite_before(before);
-  scene.rewrite_after(after);
-}
+/// A unit of heights, and the name of it that a file declares.
+struct Unit {
+  double metres;
+  const char* name;
+};
 
-/// Writes the unit of its heights into a raster, as gdal_edit.py -units does.
-void declare_unit(const std::filesystem::path& raster, const char* unit) {
-  const GDALDatasetUniquePtr file(GDALDataset::Open(raster.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
-  file->GetRasterBand(1)->SetUnitType(unit);
+/// Writes the heights of a scene in units that the files declare.
+void rewrite_in(test::Scene& scene, const Unit& before, const Unit& after) {
+  for (const auto& [file, raster, unit] : {std::tuple{scene.options.before_dem, scene.before, before},
+                                           std::tuple{scene.options.after_dem, scene.after, after}}) {
+    Raster in_units = raster;
+    for (double& z : in_units.values) z /= unit.metres;
+    write_geotiff(file, in_units, {"", unit.name, {}});
+  }
 }
 
 TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
@@ -187,9 +186,7 @@ TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
   };
   for (const Case& c : {Case{1, ft, "", "foot"}, {us_ft, 1, "us-survey-foot", ""}, {us_ft, ft, "us-ft", "ft"}}) {
     test::Scene scene;
-    rewrite_in(scene, c.before, c.after);
-    declare_unit(scene.options.before_dem, c.declared_before);
-    declare_unit(scene.options.after_dem, c.declared_after);
+    rewrite_in(scene, {c.before, c.declared_before}, {c.after, c.declared_after});
     const Prepared prepared = scene.prepare();
     const auto& difference = prepared.slide->change;
     for (std::size_t i = 0; i < difference.values.size(); ++i) {

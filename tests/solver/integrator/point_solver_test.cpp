@@ -41,7 +41,7 @@ struct Still {
     o.material.density = 1500;
     scene = make_scene(d, o);
     settings = make_settings(o, scene.grid).common;
-    settings.walls = {{.axis = 0, .position = 7, .from = 1}};
+    settings.walls = {{.axis = 0, .position = 7, .to = 1}};
     start = first_state(scene, settings);
   }
   StandingStill make() const { return {scene, settings, start}; }
@@ -82,9 +82,9 @@ TEST(PointSolver, measures_volumes_over_columns_where_densities_differ_alone) {
 TEST(PointSolver, lets_the_grid_meet_the_walls_of_a_time) {
   const Still still;
   StandingStill solver = still.make();
-  EXPECT_EQ(solver.set_walls<double>(0.5).count, 0);
+  EXPECT_EQ(solver.set_walls<double>(1.5).count, 0);
   EXPECT_EQ(solver.walls().west, -WallNodes::far);
-  EXPECT_EQ(solver.set_walls<double>(1.5).count, 1);
+  EXPECT_EQ(solver.set_walls<double>(0.5).count, 1);
   EXPECT_EQ(solver.walls().west, 3);  // 7 m, nodes at 1 m, 3 m, ...
 }
 

@@ -47,11 +47,12 @@ TEST(Schedule, end_and_an_event_a_rounding_before_it_are_one) {
   EXPECT_FALSE(Schedule(o).ends_between_frames(5.4, passed)) << "the frame of the end is there";
 }
 
-TEST(Schedule, no_step_goes_over_a_wall_that_goes) {
+TEST(Schedule, no_step_goes_over_a_wall_that_goes_or_a_load_that_comes) {
   SolveOptions o = some_options();
-  o.walls.resize(2);
+  o.walls.resize(1);
   o.walls[0].to = 0.3;
-  o.walls[1].to = 0.25;
+  o.loads.resize(1);
+  o.loads[0].from = 0.25;
   const Schedule schedule(o);
   RunMemory passed;
   passed.frames = passed.records = 1;
