@@ -7,6 +7,8 @@
 //   holds                whether what presses on the bed does not slip at all
 //   asks_pressure        whether it looks at the normal stress of the base node
 //   asks_column          whether its coefficient follows from load, weight and mean speed of the column
+//   acts_at_rest         whether a search for the factor of safety takes it
+//   friction_key         the key that alone decides its friction; empty where several do
 //   Options, uses        keys of the recipe with describe(); the keys that it looks at. A key that a raster can give
 //                        is in common/domain/bed_numbers.hpp as well
 //   check                what its keys need of those of other laws
@@ -14,6 +16,7 @@
 //                        from the options of all laws
 //   count, numbers       numbers of a place that kernels see, made from the options of all laws
 //   constant_count, constants  those of the scene
+//   weaken               only where that search can divide its strength: divides the numbers of a place
 //   coefficient          friction over normal stress for a slip
 //   drag, drags          traction that grows with speed [Pa], and whether there is any
 //   yield, yields        traction besides friction at any speed [Pa], and whether there is any

@@ -11,6 +11,9 @@
 //   Options                   keys of the recipe: describe(), softens(), dilates(); names of keys and members are the
 //                             law's own, for MaterialOptions has those of all laws
 //   Options::internal_friction  only where the strength is friction: its coefficient in slow shear
+//   Options::cones, held_share  likewise: cones that keys ask for, the steepest last; share of the pressure held inside
+//   Options::density_fault    only where a density of the mass can contradict the law's keys
+//   Options::weaken           only where a search for the factor of safety can divide the strength
 //   words, sentence           the material in a line for plan and log, and in a sentence of the report ("It is ...")
 //   Numbers<Real>, numbers()  what kernels see of the options; soften(), round_tip()
 //   stress, energy            Kirchhoff stress [Pa] and elastic energy per initial volume [J/m3] of a state

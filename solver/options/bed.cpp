@@ -83,6 +83,10 @@ std::string BaseOptions::law_name() const {
   return visit_law(law, [](auto own) { return std::string(own.name); });
 }
 
+std::string BaseOptions::friction_key() const {
+  return visit_law(law, [](auto own) { return std::string(own.friction_key); });
+}
+
 std::string BaseOptions::separation_name() const {
   return separation == Separation::free ? "free" : separation == Separation::none ? "none" : "thin";
 }

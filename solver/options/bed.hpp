@@ -29,6 +29,8 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   bool asks_column() const;               ///< whether the law's coefficient follows from weight and speed of a column
   /// The name of the chosen law.
   std::string law_name() const;
+  /// The key that alone decides the friction of the chosen law; empty where several do.
+  std::string friction_key() const;
   /// The chosen separation as recipes write it.
   std::string separation_name() const;
   /// The bed in a line, for plan and log.

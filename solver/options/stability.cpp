@@ -39,13 +39,19 @@ BeyondSearch beyond_materials(const SolveOptions& o) {
 
 /// Whether something has a strength that can be divided.
 bool has_strength(const SolveOptions& o) {
-  return o.base.law == FrictionLaw::coulomb ||
-         o.any_material([](const MaterialOptions& m) { return m.model == MaterialModel::drucker_prager; });
+  const bool bed = visit_law(o.base.law, [](auto law) {
+    return requires { law.weaken(nullptr, 1.0); };
+  });
+  return bed || o.any_material([](const MaterialOptions& m) {
+    return visit_law(m.model, [](auto law) {
+      return requires(typename decltype(law)::Options & options) { options.weaken(1.0); };
+    });
+  });
 }
 
 BeyondSearch beyond_search(const SolveOptions& o) {
   if (BeyondSearch material = beyond_materials(o); !material.what.empty()) return material;
-  if (o.base.law != FrictionLaw::coulomb && o.base.law != FrictionLaw::none && o.base.law != FrictionLaw::stick)
+  if (!visit_law(o.base.law, [](auto law) { return law.acts_at_rest; }))
     return {"[solve.base] law = \"" + o.base.law_name() + "\"", "its friction is that of a flow, not of rest",
             "Take law = \"coulomb\" with the friction at rest, \"stick\" or \"none\""};
   if (!has_strength(o))

@@ -11,6 +11,8 @@ namespace talus {
 /// The base of the basal laws, with what a law that says nothing else does; see solver/boundary/law.hpp.
 struct BasalLaw {
   static constexpr bool rubs = true, holds = false, asks_pressure = false, asks_column = false;
+  static constexpr bool acts_at_rest = false;  ///< whether a search for the factor of safety takes the law
+  static constexpr std::string_view friction_key = {};
   static constexpr int constant_count = 0;
 
   /// There is nothing that the keys of several laws need of one another.

@@ -12,7 +12,8 @@ namespace talus {
 
 /// Coulomb's law of friction.
 struct Coulomb : BasalLaw {
-  static constexpr std::string_view name = "coulomb";
+  static constexpr std::string_view name = "coulomb", friction_key = "friction_angle_deg";
+  static constexpr bool acts_at_rest = true;
 
   /// The keys of the law; Voellmy's law takes its angle from here.
   struct Options {
@@ -46,6 +47,9 @@ struct Coulomb : BasalLaw {
   static void numbers(const All& o, const BedSetting& setting, double* n) {
     n[mu] = setting.borne * o.friction();
   }
+
+  /// This function divides the strength by a factor.
+  static void weaken(double* n, double factor) { n[mu] /= factor; }
 
   /// The ratio of friction to normal stress, mu [-].
   template <class Real>

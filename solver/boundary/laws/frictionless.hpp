@@ -10,7 +10,7 @@ namespace talus {
 /// The base of a law without friction; `Law` is the law itself, so that each has its own types.
 template <class Law>
 struct FrictionlessLaw : BasalLaw {
-  static constexpr bool rubs = false;
+  static constexpr bool rubs = false, acts_at_rest = true;
   static constexpr int count = 0;
 
   /// The law has no keys.

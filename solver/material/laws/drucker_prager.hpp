@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "solver/material/law_list.hpp"
 #include "solver/material/laws/hencky.hpp"
@@ -30,6 +31,13 @@ struct ConeFit {
 /// The steepest cone under which grains carry no tension: with a steeper one the least principal stress of an extension
 /// is tensile.
 inline constexpr double steepest_cone = 0.5 * std::numbers::sqrt3;
+
+/// A key that gives an angle of friction inside, and the cone sqrt(J2) = slope p that it asks for.
+struct AskedCone {
+  const char* key;
+  double angle;  ///< [deg]
+  double slope;  ///< [-]
+};
 
 /// The cone through Mohr-Coulomb of this friction angle [rad] and cohesion [Pa]: in triaxial compression or extension
 /// (Chen & Mizuno 1990, table 4.1), in plane strain for flow with this dilatancy angle [rad] (T15a), which is the
@@ -179,6 +187,22 @@ struct DruckerPrager {
     }
     /// The friction coefficient inside [-].
     double internal_friction() const { return std::tan(friction_angle * std::numbers::pi / 180); }
+    /// The cone that the keys ask for.
+    std::vector<AskedCone> cones() const {
+      return {{"friction_angle_deg", friction_angle, asked_cone(friction_angle, cohesion).slope}};
+    }
+    /// The share of the pressure p [Pa] that the material holds in slow simple shear [-].
+    double held_share(double pressure) const {
+      const ConeFit fit = cone_of(friction_angle, cohesion);
+      return (1 - pore_pressure_ratio) * fit.slope + (pressure > 0 ? fit.cohesion / pressure : 0);
+    }
+    /// The method divides the strength by a factor; the dilatancy angle is no larger than the friction angle left.
+    void weaken(double factor) {
+      constexpr double degree = std::numbers::pi / 180;
+      friction_angle = std::atan(std::tan(friction_angle * degree) / factor) / degree;
+      cohesion /= factor;
+      dilatancy_angle = std::min(dilatancy_angle, friction_angle);
+    }
     /// Whether strength falls as the material shears.
     bool softens() const { return softening_slip > 0; }
     /// Whether shear changes the volume of the material.

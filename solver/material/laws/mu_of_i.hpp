@@ -61,6 +61,15 @@ struct MuOfI : FlowingLaw<MuOfI> {
     double internal_friction() const { return std::tan(static_friction_angle * std::numbers::pi / 180); }
     /// The friction coefficient that fast flow tends to, mu_2 [-].
     double limiting_friction() const { return std::tan(limiting_friction_angle * std::numbers::pi / 180); }
+    /// The cones that the keys ask for, the steepest last.
+    std::vector<AskedCone> cones() const {
+      return {{"static_friction_angle_deg", static_friction_angle, internal_friction()},
+              {"limiting_friction_angle_deg", limiting_friction_angle, limiting_friction()}};
+    }
+    /// The share of the pressure that the material holds in slow simple shear [-].
+    double held_share(double) const { return std::min(internal_friction(), steepest_cone); }
+    /// What is wrong with the density of the mass [kg/m3] beside that of its grains; empty: nothing.
+    std::string density_fault(double density) const;
     /// The inertial number from which the equations of the incompressible law are well posed (Barker et al. 2015); 0
     /// where they are nowhere, as the friction rises too little.
     double first_well_posed() const;
@@ -244,6 +253,20 @@ struct MuOfI : FlowingLaw<MuOfI> {
 
 /// The definition of the first inertial number where (T27a), C = 4 X^2 - 4 X + mu^2 (1 - X / 2)^2 <= 0, X = I mu' / mu
 /// (Barker et al. 2015).
+inline std::string MuOfI::Options::density_fault(double density) const {
+  if (dilates()) {
+    constexpr double water = 1000, close = 0.02;
+    const double dry = volume_fraction * grain_density, full = dry + (1 - volume_fraction) * water;
+    if (density >= (1 - close) * dry && density <= (1 + close) * full) return {};
+    return "does not go with grain_density_kg_m3 = " + six_digits(grain_density) +
+           " and volume_fraction = " + six_digits(volume_fraction) + ". Grains so packed have " + six_digits(dry) +
+           ", and " + six_digits(full) + " with water between them";
+  }
+  if (density <= grain_density) return {};
+  return "is that of the mass, pores included, and above grain_density_kg_m3 = " + six_digits(grain_density) +
+         ". Dry grains fill about 0.6 of the space: give " + six_digits(0.6 * grain_density);
+}
+
 inline double MuOfI::Options::first_well_posed() const {
   const auto ill_posed = [&](double i) {
     const InertialFriction<double> mu(internal_friction(), limiting_friction(), fast_friction_rise, inertial_number, i);

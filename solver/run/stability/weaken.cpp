@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace talus::solver {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 template <class Change>
 void change_materials(SolveOptions& options, const Change& change) {
@@ -19,16 +16,17 @@ void change_materials(SolveOptions& options, const Change& change) {
 }
 
 void weaken(MaterialOptions& m, double factor) {
-  if (m.model != MaterialModel::drucker_prager) return;
-  DruckerPrager::Options& cone = m;
-  cone.friction_angle = std::atan(std::tan(cone.friction_angle * degree) / factor) / degree;
-  cone.cohesion /= factor;
-  cone.dilatancy_angle = std::min(cone.dilatancy_angle, cone.friction_angle);
+  visit_law(m.model, [&](auto law) {
+    typename decltype(law)::Options& options = m;
+    if constexpr (requires { options.weaken(factor); }) options.weaken(factor);
+  });
 }
 
 void weaken(Bed<double>& bed, FrictionLaw law, double factor) {
   bed.cohesion /= factor;
-  if (law == FrictionLaw::coulomb) bed.numbers[Coulomb::mu] /= factor;
+  visit_law(law, [&](auto own) {
+    if constexpr (requires { own.weaken(bed.numbers, factor); }) own.weaken(bed.numbers, factor);
+  });
 }
 
 }  // namespace
