@@ -14,6 +14,7 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/run/run_facts.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
 #include "postprocess/compare/compare.hpp"
@@ -39,13 +40,8 @@ void check_volume(const fs::path& file, const Run& run) {
   if (!(error < 1e-2))
     throw DataError({what, fmt::format("they differ by {:.1e} of the release", error), "Run talus-solve again"});
   if (error > 1e-9)
-    log_warning(fmt::format("{} ({:.1e} of the release; 1e-9 is expected in double precision)", what, error));
-}
-
-/// True where the analyst insisted on this in a stage before.
-bool accepted_before(const RunSummary& summary, const std::string& name) {
-  const auto accepted = accepted_in(summary.provenance);
-  return std::any_of(accepted.begin(), accepted.end(), [&](const auto& one) { return one.first == name; });
+    warn("map-volume", fmt::format("{} ({:.1e} of the release; 1e-9 is expected in double precision)", what, error),
+         {{"volume_error", error, "1"}});
 }
 
 fs::path run_file(const StageContext& context, const Options& options) {
@@ -100,7 +96,7 @@ Dependencies depends(const StageContext& context) {
 namespace {
 
 /// Refuses a run of another recipe than the one at hand, or of a domain that another one made.
-Facts judge_run(const StageContext& context, const Job& job) {
+void judge_run(const StageContext& context, const Job& job) {
   const RunSummary& run = job.run.summary;
   MadeBy made{.file = job.file,
               .table = "solve",
@@ -108,13 +104,11 @@ Facts judge_run(const StageContext& context, const Job& job) {
               .program = "talus-solve",
               .key = "run in [postprocess]",
               .named = !job.options.run.empty()};
-  Facts facts = judge_maker(context.recipe, made);
-  const bool domain_named = accepted_before(run, "another-recipe");
+  const bool is_named = judge_maker(context.recipe, made) || is_accepted(run.findings, "another-recipe");
   made.table = "preprocess";
   made.mark = fact(run.provenance, recipe_of_domain);
   made.program = "talus-preprocess and talus-solve";
-  if (!facts.empty() || fact(run.provenance, run_id).empty() || domain_named) return facts;
-  return judge_maker(context.recipe, made);
+  if (!is_named && !fact(run.provenance, run_id).empty()) judge_maker(context.recipe, made);
 }
 
 /// Refuses a survey that another recipe made, or that was prepared with another domain than the run's.
@@ -135,10 +129,10 @@ void judge_survey(const StageContext& context, const FoundSurvey& found, const J
 /// A run keeps the name and title it was computed under.
 void warn_of_other_title(const StageContext& context, const RunSummary& run) {
   if (run.scene != context.recipe.scene_name() || run.title != context.recipe.title())
-    log_warning(
-        fmt::format("the run is called \"{}\" ({}), the recipe \"{}\" ({}): the results bear the run's words; "
-                    "run talus-solve again for those of the recipe",
-                    run.title, run.scene, context.recipe.title(), context.recipe.scene_name()));
+    warn("other-title",
+         fmt::format("the run is called \"{}\" ({}), the recipe \"{}\" ({}): the results bear the run's words; "
+                     "run talus-solve again for those of the recipe",
+                     run.title, run.scene, context.recipe.title(), context.recipe.scene_name()));
 }
 
 std::string used_text(const StageContext& context, const Job& job) {
@@ -162,33 +156,29 @@ void write_results(StageContext& context, Job& job) {
 void run_single(StageContext& context, const Options& options) {
   Job job{.options = options, .out = context.out, .command_line = context.command_line};
   job.used = [&] { return used_text(context, job); };
-  Acceptance acceptance("postprocess", job.options.accept);
+  Findings findings("postprocess", job.options.accept);
   if (job.options.survey.from_preprocess) require_whole_survey(context.out);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
   job.options.survey.find_in(context.out, found.error_known);
-  acceptance.collect();
-  judge_outside(found, context.out, acceptance);
-  Facts insisted;
-  acceptance.meanwhile([&] {
+  findings.settled([&] {
+    judge_outside(found, context.out);
     job.file = run_file(context, job.options);
     job.run = read_run(job.file);
-    insisted = judge_run(context, job);
+    judge_run(context, job);
     if (job.options.survey.from_preprocess) judge_survey(context, found, job);
     warn_of_other_title(context, job.run.summary);
     check_volume(job.file, job.run);
     job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+    if (job.survey && !is_accepted(job.run.summary.findings, "swapped-surveys")) judge_order(*job.survey, job.run.maps);
   });
-  if (job.survey && !accepted_before(job.run.summary, "swapped-surveys"))
-    judge_order(*job.survey, job.run.maps, acceptance);
-  acceptance.settle();
   if (!found.error_known)
-    job.survey->notes.push_back(
-        "Warning: the error of the survey is not known (talus-preprocess says why), so that no score carries one.");
-  if (found.outside_is_doubtful && job.survey) job.survey->notes.push_back("Warning: " + found.outside_words);
-  acceptance.warn_of_unmet();
-  auto& facts = job.run.summary.provenance;
-  facts.insert(facts.end(), acceptance.facts().begin(), acceptance.facts().end());
-  facts.insert(facts.end(), insisted.begin(), insisted.end());
+    warn("no-error-of-scores",
+         "the error of the survey is not known (talus-preprocess says why), so that no score carries one");
+  if (found.outside_is_doubtful && job.survey) warn("change-outside-slide", found.outside_words);
+  warn_of_unused("postprocess", job.options.accept, findings.list());
+  warn_of_end(job.run);
+  auto& all = job.run.summary.findings;
+  all.insert(all.end(), findings.list().begin(), findings.list().end());
   job.thalweg = thalweg_of(job.run, job.options);
   job.hazard = hazard_of(job.run, job.options);
   job.budget = budget_table(budget_file(job.file), {job.run, job.options, job.survey, job.thalweg});
@@ -209,7 +199,8 @@ void run(StageContext& context) {
   if (single)
     run_single(context, options);
   else if (const fs::path file = run_file(context, options); fs::exists(file))
-    log_warning(fmt::format("{}: another recipe made it than the ensemble's; it is left as it is", file.string()));
+    warn("run-of-another-recipe",
+         fmt::format("{}: another recipe made it than the ensemble's; it is left as it is", file.string()));
 }
 
 namespace {

@@ -38,9 +38,10 @@ void report(const Prepared& prepared) {
   if (prepared.survey) {
     for (const std::string& line : as_lines(*prepared.survey)) log_info(line);
   }
-  if (prepared.slide)
-    (prepared.slide->outside_is_large || prepared.slide->outside_is_doubtful ? log_warning : log_info)(
-        outside_words(*prepared.slide));
+  if (prepared.slide) {
+    const bool doubtful = prepared.slide->outside_is_large || prepared.slide->outside_is_doubtful;
+    doubtful ? warn("change-outside-slide", outside_words(*prepared.slide)) : log_info(outside_words(*prepared.slide));
+  }
   const std::string whole = prepared.by_release.size() == 1 ? prepared.by_release.front().first : "all releases";
   if (prepared.by_release.empty()) {
     log_info("nothing is released: all that moves enters over time, by [[solve.inflow]]");
@@ -76,17 +77,16 @@ void run_difference(StageContext& context, const Options& options) {
   if (options.way() != Way::before_and_after)
     throw RecipeError(Fault{"--difference: [preprocess] does not give before_dem and after_dem",
                             "there is nothing to compare", "Give both, or leave --difference out"});
-  Survey survey = survey_of(options);
-  survey.accepted.settle();
+  Findings found("preprocess", options.accept);
+  const Survey survey = survey_of(options);
+  found.settle();
   const Facts marks = marks_of(context.recipe, checksums_of({options.before_dem, options.after_dem}));
   std::vector<std::string> lines = as_lines(survey);
   if (!context.check_only) context.results = write_survey(context.out / "survey", survey, nullptr, marks, lines);
   for (const std::string& line : lines) log_info(line);
-  Facts facts{{"crs", crs_name(survey.grid.crs_wkt)}};
-  facts.insert(facts.end(), survey.accepted.facts().begin(), survey.accepted.facts().end());
   if (!context.check_only)
     write_used_recipe(context, stage(), recipe::to_toml(options, "preprocess", false),
-                      {options.before_dem, options.after_dem}, facts);
+                      {options.before_dem, options.after_dem}, {{"crs", crs_name(survey.grid.crs_wkt)}});
 }
 
 Options read_options(const StageContext& context) { return context.recipe.read<Options>("preprocess"); }
@@ -101,10 +101,8 @@ void write_obstacles(StageContext& context, Prepared& prepared) {
   }
   write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);
   context.results.push_back(bodies);
-  Facts& provenance = prepared.domain.provenance;
-  provenance.emplace_back(obstacles_checksum, sha256(bodies));
-  const Facts places = obstacle_places(read_options(context).obstacle, prepared.domain.grid.crs_wkt);
-  provenance.insert(provenance.end(), places.begin(), places.end());
+  prepared.domain.provenance.emplace_back(obstacles_checksum, sha256(bodies));
+  prepared.domain.obstacles = obstacle_places(read_options(context).obstacle, prepared.domain.grid.crs_wkt);
 }
 
 /// domain.vdb, or the survey alone where only the difference is asked for.
@@ -169,7 +167,7 @@ void run(StageContext& context, const PreprocessFlags& flags) {
     throw RecipeError({"an error budget with [ensemble]", "members of an ensemble say by themselves how far runs go",
                        "Leave one of them out"});
   SurveyMemory memory;
-  EnsembleBase base{options, read_scene(options, &memory), memory, {}, {}, {}};
+  EnsembleBase base{options, read_scene(options, &memory), memory, {}, {}, {}, {}};
   auto prepared = prepare(resolved(options), base.scene, context.check_only ? Points::counted : Points::seeded);
   report(prepared);
   if (ensemble) look_at_ensemble(context, *ensemble, base);
@@ -178,12 +176,14 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   const Facts inputs = checksums_of(prepared.inputs), facts = facts_of(prepared);
   const Facts marks = marks_of(context.recipe, inputs);
   prepared.domain.provenance = provenance_of(context, inputs, marks, facts);
+  prepared.domain.findings = findings_so_far();
   write_survey_files(context, prepared, marks);
-  const auto own = static_cast<std::ptrdiff_t>(prepared.domain.provenance.size());
   write_obstacles(context, prepared);
   base.inputs = inputs;
   base.marks = marks;
-  base.obstacles.assign(prepared.domain.provenance.begin() + own, prepared.domain.provenance.end());
+  if (!prepared.obstacles.empty())
+    base.checksums = {{obstacles_checksum, fact(prepared.domain.provenance, obstacles_checksum)}};
+  base.obstacles = prepared.domain.obstacles;
   if (budget.make)
     write_budget_domains(context, budget, base, prepared.domain);
   else

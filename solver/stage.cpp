@@ -149,16 +149,15 @@ void refuse_flags_of_runs(const SolveFlags& flags) {
                      "Leave it out; a search that was broken off begins anew"});
 }
 
-/// This function runs the members of the recipe's ensemble, and returns the facts for the used recipe. `facts` are what
-/// is insisted on.
+/// This function runs the members of the recipe's ensemble, and returns the facts for the used recipe.
 Facts run_members_of(StageContext& context, const SolveFlags& flags, const std::shared_ptr<const Domain>& domain,
-                     const SolveOptions& options, const AnyDevice& device, const Facts& facts) {
+                     const SolveOptions& options, const AnyDevice& device) {
   if (options.stability.factor_of_safety)
     throw RecipeError({"[ensemble] with [solve.stability] factor_of_safety", "the search is no run in time",
                        "Leave one of them out"});
   EnsembleFlags ensemble = ensemble_flags(flags);
   ensemble.on = device.is_gpu() ? On::gpu : On::cpu;
-  Facts used = run_ensemble(context, ensemble, domain, options, facts);
+  Facts used = run_ensemble(context, ensemble, domain, options);
   if (!used.empty()) used.emplace_back("on", device.is_gpu() ? gpu_name(device.gpu().index()) : hardware());
   return used;
 }
@@ -169,10 +168,10 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   const AnyDevice device = make_device(choose_device(flags.on));
   const auto domain_file = inputs_of(options, context.out).front();
   const auto domain = std::make_shared<const Domain>(read_domain(domain_file));
-  const Facts insisted = judge_inputs(context, options, domain_file, *domain);
+  judge_inputs(context, options, domain_file, *domain);
   for (const std::string& text : idle_places(options, domain->places)) log_info(text);
   options = with_places(std::move(options), domain->places);
-  if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device, insisted);
+  if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device);
   if (flags.members || flags.at_a_time > 0)
     throw RecipeError({flags.members ? "--members without an ensemble" : "--at-a-time without an ensemble",
                        "the recipe asks for one run", "Leave it out, or add [ensemble] with members"});
@@ -180,11 +179,11 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
     const auto made = plan(domain, options);
     for (const std::string& reason : made->reasons) log_info(reason);
     options = noted_options(*made);
-    return run_in_time(context, flags.run, made, device, insisted);
+    return run_in_time(context, flags.run, made, device);
   }
   refuse_flags_of_runs(flags);
   context.check_only = context.check_only || flags.run.plan;
-  return find_stability(context, options, device, *domain, insisted);
+  return find_stability(context, options, device, *domain);
 }
 
 /// This function notes what was used.

@@ -12,7 +12,9 @@
 
 #include "common/domain/active_cells.hpp"
 #include "common/domain/domain_place.hpp"
+#include "common/map/places.hpp"
 #include "common/map/raster.hpp"
+#include "common/stage/findings.hpp"
 
 namespace talus {
 
@@ -41,8 +43,10 @@ struct Domain {
   int erodible = 0;  // of these, the first so many lie in the ground until something takes them along
   SeedPoints points;
   std::vector<DomainPlace> places;    // lines and points that [solve] asks for by name
+  std::vector<MapPlace> obstacles;    // where those of obstacles.vdb stand
   std::optional<ActiveCells> active;  // the mask of the file it was read from; none where it was made in memory
   std::vector<std::pair<std::string, std::string>> provenance;  // version, command, inputs and checksums
+  std::vector<Finding> findings;                                // of talus-preprocess
 };
 
 /// Write `file` (aside, renamed): PointDataGrid "points" (attributes volume, height, extent_x, extent_y, release),

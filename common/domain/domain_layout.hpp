@@ -27,6 +27,8 @@ inline constexpr auto places = "places";              ///< how many
 inline constexpr auto place_of = "place_of";          ///< numbered: the [[preprocess.place]] it is of
 inline constexpr auto place_name = "place_name";      ///< likewise
 inline constexpr auto place_points = "place_points";  ///< likewise, as text_of_points()
+inline constexpr auto findings = "findings";          ///< array of JSON
+inline constexpr auto obstacles = "obstacles";        ///< likewise, their places
 inline constexpr auto bed_prefix = "bed.";            ///< and the name of a number of [solve.base]
 
 inline constexpr auto volume = "volume";

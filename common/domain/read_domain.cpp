@@ -220,6 +220,12 @@ Domain assemble(const fs::path& file, const Contents& contents) {
     domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));
   domain.erodible = facts.number("erodible");
   domain.places = named_places(file, facts);
+  auto findings = findings_in(facts.text(layout::findings));
+  auto obstacles = places_in(facts.text(layout::obstacles));
+  if (!findings || !obstacles)
+    refuse(file, "not a whole domain", "the entry \"findings\" or \"obstacles\" is not of this program");
+  domain.findings = std::move(*findings);
+  domain.obstacles = std::move(*obstacles);
   for (std::size_t i = 0; i < facts.count("facts"); ++i)
     domain.provenance.emplace_back(facts.text(layout::numbered("fact_name", i)),
                                    facts.text(layout::numbered("fact_value", i)));

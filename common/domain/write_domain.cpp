@@ -134,6 +134,8 @@ openvdb::MetaMap metadata_of(const Domain& domain) {
     text(layout::numbered(layout::place_name, i), domain.places[i].name);
     text(layout::numbered(layout::place_points, i), text_of_points(domain.places[i].points));
   }
+  text(layout::findings, to_json(domain.findings));
+  text(layout::obstacles, places_json(domain.obstacles));
   count("facts", domain.provenance.size());
   for (std::size_t i = 0; i < domain.provenance.size(); ++i) {
     text(layout::numbered("fact_name", i), domain.provenance[i].first);

@@ -11,7 +11,6 @@
 
 #include "common/error.hpp"
 #include "common/map/crop.hpp"
-#include "common/stage/acceptance.hpp"
 #include "common/stage/identity.hpp"
 
 namespace talus {
@@ -48,8 +47,9 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
     for (auto footprints : footprints_of_members) (all.*footprints)[to] = std::move((part.*footprints)[from]);
     all.deposit_thickness[to] = std::move(part.deposit_thickness[from]);
   }
-  for (auto list : {&EnsembleCounts::failures, &EnsembleCounts::warnings})
-    for (MemberWords& one : part.*list) add_in_order(all.*list, std::move(one));
+  for (MemberWords& one : part.failures) add_in_order(all.failures, std::move(one));
+  for (Finding& finding : part.findings)
+    if (finding.member != Finding::no_member) all.add_finding(finding.member, std::move(finding));
 }
 
 bool same_scene(const EnsembleScene& a, const EnsembleScene& b) {
@@ -100,14 +100,6 @@ std::int64_t shared_member(const EnsembleCounts& all, const EnsembleCounts& part
   return -1;
 }
 
-/// What members of other parts were insisted on.
-void add_accepted(Facts& all, const Facts& part) {
-  for (const auto& [name, words] : accepted_in(part)) {
-    const std::string key = accepted_fact(name);
-    if (fact(all, key).empty()) all.emplace_back(key, words);
-  }
-}
-
 }  // namespace
 
 std::int64_t EnsembleCounts::count(MemberState state) const { return std::count(states.begin(), states.end(), state); }
@@ -138,6 +130,11 @@ void EnsembleCounts::add(std::int64_t member, const RunMaps& run, const MemberRe
   flow[place] = footprint_of(run.peak_thickness, scene.threshold);
   deposit[place] = footprint_of(run.deposit_thickness, scene.threshold);
   if (keeps_deposits) deposit_thickness[place] = keep_thickness(run.deposit_thickness);
+}
+
+void EnsembleCounts::add_finding(std::int64_t member, Finding finding) {
+  finding.member = member;
+  findings.insert(std::ranges::upper_bound(findings, member, {}, &Finding::member), std::move(finding));
 }
 
 void EnsembleCounts::fail(std::int64_t member, std::string words) {
@@ -182,6 +179,8 @@ EnsembleCounts merged(std::vector<EnsembleCounts> parts, const std::vector<std::
       all = empty_counts(part.scene, part.members, {0, part.members}, {});
       all.fingerprint = part.fingerprint;
       all.provenance = part.provenance;
+      std::ranges::copy_if(part.findings, std::back_inserter(all.findings),
+                           [](const Finding& f) { return f.member == Finding::no_member; });
       for (std::size_t m = 0; m < all.maps.size(); ++m)
         all.maps[m] = MapTally(part.maps[m].thresholds, 0, part.scene.tallied);
     }
@@ -189,7 +188,6 @@ EnsembleCounts merged(std::vector<EnsembleCounts> parts, const std::vector<std::
     if (const std::int64_t twice = shared_member(all, part); twice >= 0)
       throw DataError({fmt::format("{}: member {} is counted in another file as well", files[n].string(), twice),
                        "it would count twice", "Remove one of the files of counts"});
-    add_accepted(all.provenance, part.provenance);
     take(all, std::move(part));
   }
   return all;

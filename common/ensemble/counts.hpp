@@ -18,6 +18,7 @@
 #include "common/ensemble/names.hpp"
 #include "common/ensemble/options.hpp"
 #include "common/ensemble/tally.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 
 namespace talus {
@@ -115,8 +116,8 @@ struct EnsembleCounts {
   std::vector<KeptThickness> deposit_thickness;   ///< likewise; of members that were added while keeps_deposits
   bool keeps_deposits = false;                    ///< members that are added leave the map of their deposit
   std::vector<MemberWords> failures;              ///< by member
-  std::vector<MemberWords> warnings;              ///< of members that ended, by member
   Facts provenance;
+  std::vector<Finding> findings;  ///< of the stages, then of members that ended, by member
 
   /// The number of members of a state.
   std::int64_t count(MemberState state) const;
@@ -124,6 +125,8 @@ struct EnsembleCounts {
   std::vector<std::int64_t> at_edge() const;
   /// The method counts a member's run. Throws std::logic_error where its grid is no window of the scene's.
   void add(std::int64_t member, const RunMaps& maps, const MemberResult& result);
+  /// The method notes what a member found.
+  void add_finding(std::int64_t member, Finding finding);
   /// The method notes that a member failed.
   void fail(std::int64_t member, std::string words);
 };

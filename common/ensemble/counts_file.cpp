@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writing and reading counts.h5. Layout: attributes of / = whose counts they are; /scene = grid and ground; /cells =
 // which cells are counted; /maps/NAME = counts of a map; /members = states, results, windows and footprints; /failures,
-// /provenance.
+// /provenance, /findings.
 #include <algorithm>
 #include <limits>
 
@@ -142,7 +142,6 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
   write_footprints(file, "/members/deposit", counts.deposit);
   write_thickness(file, counts.deposit_thickness);
   write_member_words(file, "/failures", counts.failures);
-  if (!counts.warnings.empty()) write_member_words(file, "/warnings", counts.warnings);
 }
 
 /// Refuses members whose state, failures and footprints do not belong together.
@@ -162,11 +161,12 @@ void check_members(const h5::File& file, const EnsembleCounts& counts) {
   if (failed != told)
     file.refuse(fmt::format("{} members failed, and {} failures are told", failed.size(), told.size()),
                 "there is one for each of these members, in order");
-  for (const MemberWords& warning : counts.warnings) {
-    const std::int64_t place = warning.member - counts.part.first;
+  for (const Finding& finding : counts.findings) {
+    const std::int64_t place = finding.member - counts.part.first;
+    if (finding.member == Finding::no_member) continue;
     if (place < 0 || place >= counts.part.count() ||
         counts.states[static_cast<std::size_t>(place)] == MemberState::waiting)
-      file.refuse(fmt::format("group /warnings names member {}", warning.member), "it has not been run");
+      file.refuse(fmt::format("dataset /findings names member {}", finding.member), "it has not been run");
   }
 }
 
@@ -189,7 +189,7 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
   counts.deposit = read_footprints(file, "/members/deposit", counts.windows);
   counts.deposit_thickness = read_thickness(file, counts.windows);
   counts.failures = read_member_words(file, "/failures");
-  counts.warnings = read_member_words(file, "/warnings");
+  counts.findings = h5::read_findings(file);
   check_members(file, counts);
 }
 
@@ -239,6 +239,7 @@ void write_counts(const std::filesystem::path& path, const EnsembleCounts& count
     for (std::size_t m = 0; m < counts.maps.size(); ++m) write_tally(file, counted_maps[m], counts.maps[m], order);
     write_members(file, counts);
     h5::write_facts(file, "/provenance", counts.provenance);
+    h5::write_findings(file, counts.findings);
   });
 }
 

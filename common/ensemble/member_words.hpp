@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is said of members of an ensemble: in members.h5 why the domains of some cannot be made, in counts.h5 why some
-// failed and what some warned of.
+// failed.
 #pragma once
 
 #include <cstdint>

@@ -14,6 +14,7 @@
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/grid_limits.hpp"
 #include "common/gis/raster_source.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -63,10 +64,10 @@ void warn_if_degrees(const fs::path& file, const MapGrid& grid) {
   const bool like_degrees =
       grid.crs_wkt.empty() && grid.cell < 0.005 && std::abs(grid.west) <= 360 && std::abs(grid.north()) <= 90;
   if (like_degrees)
-    log_warning(
-        fmt::format("{}: no CRS and cells of {}: taken as metres. If these are degrees, say so: gdal_translate -a_srs "
-                    "EPSG:4326 {} {}",
-                    file.string(), grid.cell, file.string(), mended(file, "_degrees")));
+    warn("cells-like-degrees",
+         fmt::format("{}: no CRS and cells of {}: taken as metres. If these are degrees, say so: gdal_translate -a_srs "
+                     "EPSG:4326 {} {}",
+                     file.string(), grid.cell, file.string(), mended(file, "_degrees")));
 }
 
 MapGrid grid_of(const RasterSource& source) {
@@ -125,8 +126,9 @@ struct RasterFile::Parts {
     const bool counted = whole && !warped;
     const std::string cells =
         !counted ? "cells hold" : (count == 1 ? "1 cell holds" : fmt::format("{} cells hold", count));
-    log_warning(fmt::format("{}: {} -9999 or the like, taken as nodata though the file names no such nodata value",
-                            source.file().string(), cells));
+    warn("undeclared-nodata",
+         fmt::format("{}: {} -9999 or the like, taken as nodata though the file names no such nodata value",
+                     source.file().string(), cells));
   }
 
   bool is_whole(const CellWindow& w) const { return w.columns == grid.columns && w.rows == grid.rows; }

@@ -53,4 +53,24 @@ std::vector<std::pair<std::string, std::string>> read_facts(const File& file, co
   return facts;
 }
 
+void write_text(File& file, const std::string& path, const std::string& text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  file.write<std::uint8_t>(path, {bytes.size()}, bytes);
+}
+
+std::string read_text(const File& file, const std::string& path) {
+  const auto bytes = file.read_list<std::uint8_t>(path);
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_findings(File& file, const std::vector<Finding>& findings) {
+  write_text(file, "/findings", to_json(findings));
+}
+
+std::vector<Finding> read_findings(const File& file) {
+  auto findings = findings_in(read_text(file, "/findings"));
+  if (!findings) file.refuse("dataset /findings is no list of findings", "it was edited or written by another program");
+  return std::move(*findings);
+}
+
 }  // namespace talus::h5

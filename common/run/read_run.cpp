@@ -86,6 +86,10 @@ RunSummary read_summary(const h5::File& file) {
     summary.profile.emplace_back(phase, seconds.front());
   }
   summary.provenance = run_facts(file);
+  summary.findings = h5::read_findings(file);
+  auto places = places_in(h5::read_text(file, "/places"));
+  if (!places) file.refuse("dataset /places holds no places", "it was edited or written by another program");
+  summary.places = std::move(*places);
   return summary;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writing run.h5. Layout: attributes of / = summary; /VTKHDF = points (vtkhdf.hpp); /maps, /frames, /history,
-// /profile, /provenance.
+// /profile, /provenance, /places, /findings.
 #include "common/run/run_file.hpp"
 
 #include <optional>
@@ -60,6 +60,8 @@ void write_summary(h5::File& file, const RunSummary& summary) {
     file.write<double>("/profile/" + phase, {1}, std::vector<double>{seconds});
   }
   h5::write_facts(file, "/provenance", summary.provenance);
+  h5::write_text(file, "/places", places_json(summary.places));
+  h5::write_findings(file, summary.findings);
 }
 
 }  // namespace

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/map/places.hpp"
 #include "common/run/map_fields.hpp"
 #include "common/run/run_sanity.hpp"
+#include "common/stage/findings.hpp"
 
 namespace talus {
 
@@ -60,6 +62,8 @@ struct RunSummary {
   std::vector<std::pair<std::string, double>> profile;    // phases of the step loop [s]; empty unless measured
   std::vector<std::pair<std::string, double>> memory_of;  // its owners [bytes]
   std::vector<std::pair<std::string, std::string>> provenance;
+  std::vector<MapPlace> places;   // of obstacles, sections, inflows and gauges
+  std::vector<Finding> findings;  // of talus-preprocess, then of talus-solve
 };
 
 /// Points of one frame, for VTKHDF.

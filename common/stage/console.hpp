@@ -5,7 +5,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace talus {
 
@@ -21,23 +20,6 @@ void write_to_stderr(LogLevel level, const std::string& text);
 
 /// Take a drawn progress line off the terminal, so that the next output starts on a clean line.
 void clear_progress_line();
-
-/// While it lives, what this thread would say on stderr is kept back: facts and details are dropped, warnings kept.
-class QuietThread {
- public:
-  QuietThread();
-  ~QuietThread();
-  QuietThread(const QuietThread&) = delete;
-  QuietThread& operator=(const QuietThread&) = delete;
-
-  /// The warnings since it began.
-  const std::vector<std::string>& warnings() const { return warnings_; }
-
- private:
-  friend void log_warning(const std::string& text);
-  std::vector<std::string> warnings_;
-  QuietThread* before_;
-};
 
 /// An error line on stderr, shown even under -q.
 void log_error(const std::string& text);

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "common/stage/acceptance.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
 
@@ -36,15 +36,15 @@ bool is_used_recipe_of(const std::string& text, const std::string& id) {
   return found == std::string::npos || id.empty() || text.substr(found + mark.size(), id.size() + 1) == id + "\n";
 }
 
-Facts judge_maker(const recipe::Recipe& recipe, const MadeBy& made) {
+bool judge_maker(const recipe::Recipe& recipe, const MadeBy& made) {
   const std::string own = recipe_mark(recipe, made.table);
-  if (!recipe.canonical(made.table) || own == made.mark) return {};
+  if (!recipe.canonical(made.table) || own == made.mark) return false;
   if (made.mark.empty()) {
-    log_warning(
-        fmt::format("{}: it does not say which recipe made it (an earlier version of this program wrote it), so that "
-                    "nobody can tell whether it belongs to {}",
-                    made.file.string(), recipe.file().string()));
-    return {};
+    warn("no-recipe-mark",
+         fmt::format("{}: it does not say which recipe made it (an earlier version of this program wrote it), so that "
+                     "nobody can tell whether it belongs to {}",
+                     made.file.string(), recipe.file().string()));
+    return false;
   }
   const std::string what = fmt::format("{}: another recipe made it", made.file.string());
   const std::string why = fmt::format("the checksum of its [{}] is {}, that of {} is {}", made.table, made.mark,
@@ -54,9 +54,8 @@ Facts judge_maker(const recipe::Recipe& recipe, const MadeBy& made) {
                      fmt::format("Run {} again, or go back to the recipe that made it. To use it all the same, name "
                                  "the file in the recipe: {}",
                                  made.program, made.key)});
-  Acceptance acceptance("", {"another-recipe"});
-  acceptance.judge({"another-recipe", {what, why, ""}});
-  return acceptance.facts();
+  add_finding({Severity::refusal, "another-recipe", to_string({what, why, ""}), {}, "", made.key});
+  return true;
 }
 
 }  // namespace talus

@@ -50,8 +50,8 @@ struct MadeBy {
 };
 
 /// Refuses (DataError) a file that another recipe made: its mark is not that of the recipe's own table. A file that the
-/// recipe names is taken all the same: a warning, and the returned fact "accepted.another-recipe" goes with the
-/// results. A recipe without the table cannot tell; of a file without a mark it is said that nobody can.
-Facts judge_maker(const recipe::Recipe& recipe, const MadeBy& made);
+/// recipe names is taken all the same: the finding "another-recipe", and the function returns true. A recipe without
+/// the table cannot tell; of a file without a mark it is said that nobody can.
+bool judge_maker(const recipe::Recipe& recipe, const MadeBy& made);
 
 }  // namespace talus

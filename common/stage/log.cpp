@@ -4,10 +4,10 @@
 #include <spdlog/spdlog.h>
 
 #include <memory>
-#include <utility>
 
 #include "common/stage/console.hpp"
 #include "common/stage/context.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -32,8 +32,6 @@ const char* prefix_of(LogLevel level) {
   }
 }
 
-thread_local QuietThread* quiet_here = nullptr;
-
 }  // namespace
 
 void write_to_stderr(LogLevel level, const std::string& text) {
@@ -45,24 +43,20 @@ void set_verbosity(Verbosity verbosity) { context().verbosity = verbosity; }
 
 Verbosity verbosity() { return context().verbosity; }
 
-QuietThread::QuietThread() : before_(std::exchange(quiet_here, this)) {}
-QuietThread::~QuietThread() { quiet_here = before_; }
-
 void log_info(const std::string& text) {
-  if (quiet_here == nullptr) context().log(LogLevel::info, text);
+  if (!log_is_kept_back()) context().log(LogLevel::info, text);
 }
 
 void log_advice(const std::string& text) {
-  if (quiet_here == nullptr) context().log(LogLevel::advice, text);
+  if (!log_is_kept_back()) context().log(LogLevel::advice, text);
 }
 
 void log_warning(const std::string& text) {
-  if (quiet_here != nullptr) return quiet_here->warnings_.push_back(text);
-  context().log(LogLevel::warning, text);
+  if (!log_is_kept_back()) context().log(LogLevel::warning, text);
 }
 
 void log_detail(const std::string& text) {
-  if (quiet_here == nullptr) context().log(LogLevel::detail, text);
+  if (!log_is_kept_back()) context().log(LogLevel::detail, text);
 }
 
 void log_error(const std::string& text) { context().log(LogLevel::error, text); }

@@ -16,6 +16,7 @@
 #include "common/stage/console.hpp"
 #include "common/stage/context.hpp"
 #include "common/stage/crash_report.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
@@ -97,16 +98,17 @@ std::optional<std::vector<fs::path>> fresh_results(const Stage& stage, const Sta
   }
   const std::string result = verdict.results.front().filename().string();
   log_info(fmt::format("{}: {} is up to date", stage.table, result));
-  if (!verdict.remark.empty()) log_warning(verdict.remark);
+  if (!verdict.remark.empty()) warn("stale-remark", verdict.remark);
   return std::move(verdict.results);
 }
 
 std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
   StageContext opened = open_call(stage, call);
+  Findings found(stage.table);
   if (signals_are_watched()) name_for_interrupts(stage.name);
   if (writes_nothing(stage, call)) {
     check_output_folder(opened.out);
-    stage.run(opened);
+    found.settled([&] { stage.run(opened); });
     return opened.results;
   }
   make_output_folder(opened.out);
@@ -115,7 +117,7 @@ std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
   if (call.if_outdated)
     if (auto results = fresh_results(stage, opened)) return *results;
   opened.made_of = ingredients_before(stage, opened);
-  stage.run(opened);
+  found.settled([&] { stage.run(opened); });
   if (has_made_results(stage, opened)) note_results(stage, opened);
   return opened.results;
 }

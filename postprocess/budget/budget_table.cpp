@@ -11,6 +11,7 @@
 #include "common/gis/resampling.hpp"
 #include "common/map/statistics.hpp"
 #include "common/run/mobility.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
@@ -198,10 +199,10 @@ std::optional<BudgetTable> budget_table(const std::filesystem::path& file, const
   Budget budget = read_budget(file);
   const std::string own = fact(reference.run.summary.provenance, run_id);
   if (budget.run != own) {
-    log_warning(
-        fmt::format("{}: it is the budget of another run than {}; it is left out. talus-solve --budget makes "
-                    "one of this run",
-                    file.string(), own));
+    warn("budget-of-another-run",
+         fmt::format("{}: it is the budget of another run than {}; it is left out. talus-solve --budget makes "
+                     "one of this run",
+                     file.string(), own));
     return std::nullopt;
   }
   return BudgetComparison(reference).table(std::move(budget));

@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "common/stage/acceptance.hpp"
 #include "common/stage/identity.hpp"
 #include "postprocess/budget/budget_table.hpp"
 #include "postprocess/fields/csv_field.hpp"
@@ -61,7 +60,7 @@ OrderedJson line_json(const BudgetTable& table, const BudgetLine& line) {
                    {"state", state_word(line.run.state)},
                    {"reason", line.run.reason},
                    {"values", line.run.values}};
-  for (const auto& [name, words] : accepted_in(line.run.accepted)) json["accepted." + name] = words;
+  for (const auto& [name, words] : line.run.accepted) json[name] = words;
   if (!line.run.warnings.empty()) json["warnings"] = line.run.warnings;
   for (const auto& [name, value] : named_numbers(table, line)) json[name] = number_or_none(value);
   return json;
@@ -114,8 +113,8 @@ std::string budget_words(const BudgetTable& table) {
     }
     text += fmt::format("{} {:>10.2f} % {:>+10.0f} m\n", start, 100 * line.elsewhere,
                         line.numbers.run_out - table.own.run_out);
-    if (const std::string words = accepted_line(line.run.accepted); !words.empty())
-      text += fmt::format("{:<{}}  accepted: {}\n", "", width, words);
+    for (const auto& [name, words] : line.run.accepted)
+      text += fmt::format("{:<{}}  accepted: {}: {}\n", "", width, name.substr(name.find('.') + 1), words);
     for (const std::string& words : line.run.warnings) text += fmt::format("{:<{}}  warning: {}\n", "", width, words);
   }
   return text;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
 #include "postprocess/options/options.hpp"
@@ -20,8 +21,8 @@ ComparedRun read_compared(const fs::path& folder, const fs::path& file) {
   const std::string id = fact(facts, run_id);
   compared.score = text_if_there(folder / "score.json").value_or("");
   if (!id.empty() && !compared.score.empty() && compared.score.find('"' + id + '"') == std::string::npos) {
-    log_warning(
-        fmt::format("{}: it is of another run than {}; the page leaves it out", (folder / "score.json").string(), id));
+    warn("score-of-another-run",
+         fmt::format("{}: it is of another run than {}; the page leaves it out", (folder / "score.json").string(), id));
     compared.score.clear();
   }
   for (const auto& [stage, of] :

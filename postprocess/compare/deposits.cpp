@@ -73,13 +73,9 @@ void draw_outline(Canvas& canvas, const View& view, const RunMaps& maps, double 
 
 /// Those of the second run that the first has as well are drawn once.
 std::vector<MapPlace> places_of_both(const Run& first, const Run& second) {
-  std::vector<MapPlace> places = places_in(first.summary.provenance);
-  for (MapPlace& place : places_in(second.summary.provenance)) {
-    const bool known = std::any_of(places.begin(), places.end(), [&](const MapPlace& other) {
-      return other.words == place.words && other.rings == place.rings;
-    });
-    if (!known) places.push_back(std::move(place));
-  }
+  std::vector<MapPlace> places = first.summary.places;
+  for (const MapPlace& place : second.summary.places)
+    if (std::ranges::find(places, place) == places.end()) places.push_back(place);
   return places;
 }
 

@@ -48,9 +48,10 @@ void judge_counts(const StageContext& context, const fs::path& file, const Ensem
 void tell_of_edges(const Ensemble& ensemble) {
   const std::vector<std::int64_t> members = ensemble.counts.at_edge();
   if (members.empty()) return;
-  log_warning(fmt::format("{} came to the edge of their domain: {}; what lies beyond is missing from maps and numbers",
-                          members.size() == 1 ? "one member" : fmt::format("{} members", members.size()),
-                          ensemble.table.slides ? ensemble.table.names_of(members, 12) : member_list(members)));
+  warn("members-at-edge",
+       fmt::format("{} came to the edge of their domain: {}; what lies beyond is missing from maps and numbers",
+                   members.size() == 1 ? "one member" : fmt::format("{} members", members.size()),
+                   ensemble.table.slides ? ensemble.table.names_of(members, 12) : member_list(members)));
 }
 
 void tell_of_members(const Ensemble& ensemble) {
@@ -59,19 +60,20 @@ void tell_of_members(const Ensemble& ensemble) {
   for (std::size_t k = 0; k < counts.states.size(); ++k)
     if (counts.states[k] == MemberState::waiting) waiting.push_back(static_cast<std::int64_t>(k));
   if (!waiting.empty())
-    log_warning(
-        fmt::format("{} of {} members have not been run: {}; the results are of the others, and talus-solve "
-                    "runs them",
-                    waiting.size(), counts.members, member_list(waiting)));
+    warn("members-not-run",
+         fmt::format("{} of {} members have not been run: {}; the results are of the others, and talus-solve "
+                     "runs them",
+                     waiting.size(), counts.members, member_list(waiting)));
   std::vector<std::int64_t> failed;
   for (const MemberWords& failure : counts.failures) {
     if (failed.size() < failures_told)
-      log_warning(fmt::format("{} failed: {}", ensemble.table.name_of(failure.member), failure.words));
+      warn("member-failed", fmt::format("{} failed: {}", ensemble.table.name_of(failure.member), failure.words));
     failed.push_back(failure.member);
   }
   if (!failed.empty())
-    log_warning(fmt::format("{} of {} members failed ({}) and are left out of all counts; members.csv has the reasons",
-                            failed.size(), counts.members, member_list(failed)));
+    warn("members-failed",
+         fmt::format("{} of {} members failed ({}) and are left out of all counts; members.csv has the reasons",
+                     failed.size(), counts.members, member_list(failed)));
   tell_of_edges(ensemble);
 }
 
@@ -89,11 +91,11 @@ Ensemble read_ensemble(const StageContext& context) {
   Ensemble ensemble;
   ensemble.files = ensemble_files(context.out);
   ensemble.table = read_member_table(ensemble.files.front());
-  ensemble.insisted = judge_maker(context.recipe, {.file = ensemble.files.front(),
-                                                   .table = members_table(context.recipe),
-                                                   .mark = fact(ensemble.table.provenance, recipe_of_members),
-                                                   .program = "talus-preprocess",
-                                                   .key = ""});
+  judge_maker(context.recipe, {.file = ensemble.files.front(),
+                               .table = members_table(context.recipe),
+                               .mark = fact(ensemble.table.provenance, recipe_of_members),
+                               .program = "talus-preprocess",
+                               .key = ""});
   ensemble.counts = read_parts({ensemble.files.begin() + 1, ensemble.files.end()});
   judge_counts(context, ensemble.files[1], ensemble);
   if (ensemble.counted() == 0)

@@ -13,6 +13,7 @@
 #include "common/ensemble/member_table.hpp"
 #include "common/ensemble/options.hpp"
 #include "common/run/run_file.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::postprocess {
@@ -22,7 +23,7 @@ struct Ensemble {
   MemberTable table;
   EnsembleCounts counts;                     ///< merged: of all members
   std::vector<std::filesystem::path> files;  ///< members.h5, then the counts
-  Facts insisted;                            ///< what the analyst insisted on in this stage
+  std::vector<Finding> findings;             ///< of this stage
 
   /// Members whose run is in the counts.
   std::int64_t counted() const { return counts.count(MemberState::counted); }

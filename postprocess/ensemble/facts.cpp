@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "common/stage/acceptance.hpp"
 #include "postprocess/ensemble/hazard.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
 
@@ -24,12 +23,17 @@ std::string statistic_words(const Ensemble& ensemble, const EnsembleMap& map) {
 
 }  // namespace
 
-Facts insisted_on(const Ensemble& ensemble) {
-  Facts facts = ensemble.counts.provenance;
-  for (const auto& one : ensemble.insisted)
-    if (fact(facts, one.first).empty()) facts.push_back(one);
-  std::erase_if(facts, [](const auto& one) { return accepted_in({one}).empty(); });
-  return facts;
+std::vector<Finding> insisted_on(const Ensemble& ensemble) {
+  std::vector<Finding> all;
+  for (const auto* list : {&ensemble.counts.findings, &ensemble.findings}) {
+    for (Finding finding : *list) {
+      if (finding.severity != Severity::refusal || is_accepted(all, finding.name)) continue;
+      if (finding.member != Finding::no_member)
+        finding.message = fmt::format("in member {}, and maybe in others: {}", finding.member, finding.message);
+      all.push_back(std::move(finding));
+    }
+  }
+  return all;
 }
 
 Facts ensemble_facts(const Ensemble& ensemble) {

@@ -8,8 +8,8 @@
 
 namespace talus::postprocess {
 
-/// What the analyst insisted on, in the stages before and in this one.
-Facts insisted_on(const Ensemble& ensemble);
+/// The refusals that the recipe overrides, in the stages before and in this one: of members the first of each name.
+std::vector<Finding> insisted_on(const Ensemble& ensemble);
 
 /// Title, scene, design, seed and numbers of members: name (in capitals) and words.
 Facts ensemble_facts(const Ensemble& ensemble);

@@ -34,9 +34,10 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
   MemberRows rows{counts.states, none, none, {}};
   for (const MemberWords& failure : counts.failures)
     rows.failures.at(static_cast<std::size_t>(failure.member)) = failure.words;
-  for (const MemberWords& warning : counts.warnings) {
+  for (const Finding& warning : counts.findings) {
+    if (warning.member == Finding::no_member || warning.severity != Severity::warning) continue;
     std::string& words = rows.warnings.at(static_cast<std::size_t>(warning.member));
-    words += (words.empty() ? "" : "; ") + warning.words;
+    words += (words.empty() ? "" : "; ") + warning.message;
   }
   if (ensemble.table.slides) {
     const auto& names = ensemble.table.slides->names;

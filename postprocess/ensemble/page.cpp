@@ -6,12 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <set>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
-#include "common/stage/acceptance.hpp"
 #include "postprocess/ensemble/convergence.hpp"
 #include "postprocess/ensemble/facts.hpp"
 #include "postprocess/ensemble/hazard.hpp"
@@ -36,13 +36,6 @@ constexpr std::size_t words_on_page = 50, steps_of_convergence = 160, medoids_wa
 
 /// Of which footprints are compared, each with each.
 constexpr std::size_t members_compared = 400;
-
-/// The number of members of which something is said; the list is by member.
-std::size_t members_in(const std::vector<MemberWords>& list) {
-  std::size_t count = 0;
-  for (std::size_t n = 0; n < list.size(); ++n) count += n == 0 || list[n].member != list[n - 1].member ? 1U : 0U;
-  return count;
-}
 
 /// The first of what is said of members.
 Json words_json(const Ensemble& ensemble, const std::vector<MemberWords>& list) {
@@ -81,13 +74,18 @@ Json run_json(const EnsemblePageInput& input) {
   json["at_edge"] = at_edge.empty() ? Json() : Json(names_at_edge(ensemble, at_edge));
   json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);
   json["accepted"] = Json::array();
-  for (const auto& [name, why] : accepted_in(insisted_on(ensemble))) json["accepted"].push_back({name, why});
+  for (const Finding& f : insisted_on(ensemble)) json["accepted"].push_back({f.name, f.message});
   json["warnings"] = Json::array();
-  for (const auto& [name, why] : counts.provenance)
-    if (name.starts_with("warning.")) json["warnings"].push_back(why);
-  json["warnings_of_members"] = words_json(ensemble, counts.warnings);
-  json["warnings_in_all"] = counts.warnings.size();
-  json["members_warned"] = members_in(counts.warnings);
+  std::vector<MemberWords> of_members;
+  std::set<std::int64_t> warned;
+  for (const Finding& f : counts.findings) {
+    if (f.severity != Severity::warning) continue;
+    if (f.member == Finding::no_member) json["warnings"].push_back(f.message);
+    if (f.member != Finding::no_member) of_members.push_back({f.member, f.message}), warned.insert(f.member);
+  }
+  json["warnings_of_members"] = words_json(ensemble, of_members);
+  json["warnings_in_all"] = of_members.size();
+  json["members_warned"] = warned.size();
   json["failures"] = words_json(ensemble, counts.failures);
   return json;
 }

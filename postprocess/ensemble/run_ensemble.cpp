@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
-#include "common/stage/acceptance.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
 #include "postprocess/ensemble/hazard.hpp"
@@ -31,7 +31,6 @@ void judge_survey(const FoundSurvey& found, const fs::path& out, const Ensemble&
 
 /// The survey of the recipe, on which the members are scored.
 std::optional<Survey> survey_of(const StageContext& context, Options options, Ensemble& ensemble, bool alone) {
-  Acceptance acceptance("postprocess", options.accept);
   FoundSurvey found;
   if (options.survey.from_preprocess) {
     require_whole_survey(context.out);
@@ -39,18 +38,10 @@ std::optional<Survey> survey_of(const StageContext& context, Options options, En
     judge_survey(found, context.out, ensemble);
   }
   options.survey.find_in(context.out, found.error_known);
-  acceptance.collect();
-  if (alone) judge_outside(found, context.out, acceptance);
+  if (alone) judge_outside(found, context.out);
   const RunMaps maps = base_maps(ensemble.counts.scene);
-  std::optional<Survey> survey =
-      acceptance.meanwhile([&] { return read_survey(options.survey, maps, options.footprint_threshold); });
-  if (alone) {
-    if (survey && fact(ensemble.counts.provenance, accepted_fact("swapped-surveys")).empty())
-      judge_order(*survey, maps, acceptance);
-    acceptance.settle();
-    acceptance.warn_of_unmet();
-  }
-  for (const auto& accepted : acceptance.facts()) ensemble.insisted.push_back(accepted);
+  std::optional<Survey> survey = read_survey(options.survey, maps, options.footprint_threshold);
+  if (alone && survey && !is_accepted(ensemble.counts.findings, "swapped-surveys")) judge_order(*survey, maps);
   return survey;
 }
 
@@ -115,8 +106,12 @@ Dependencies ensemble_depends(const StageContext& context) {
 }
 
 void run_ensemble(StageContext& context, const Stage& stage, const Options& options, bool alone) {
+  Findings found("postprocess", options.accept);
   Ensemble ensemble = read_ensemble(context);
-  const std::optional<Survey> survey = survey_of(context, options, ensemble, alone);
+  std::optional<Survey> survey;
+  found.settled([&] { survey = survey_of(context, options, ensemble, alone); });
+  if (alone) warn_of_unused("postprocess", options.accept, found.list());
+  ensemble.findings = found.list();
   hazard_rule(ensemble, options.hazard);
   const MapGrid& grid = ensemble.counts.scene.grid;
   const double draws = independent_draws(ensemble.table, ensemble.counted());

@@ -10,8 +10,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "common/stage/acceptance.hpp"
-
 namespace talus::postprocess {
 
 std::vector<MapField> product_fields(const RunMaps& maps) {
@@ -76,8 +74,6 @@ std::string file_word(const std::string& name) {
   }
   return word;
 }
-
-std::string accepted_words(const RunSummary& summary) { return accepted_line(summary.provenance); }
 
 double volume_under(const std::vector<double>& thickness, double cell) {
   long double sum = 0;

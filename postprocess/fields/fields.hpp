@@ -33,10 +33,6 @@ std::string file_word(const std::string& name);
 /// Those of several names, in their order: where two would be the same, the later one ends in "-2", "-3", ...
 std::vector<std::string> file_words(const std::vector<std::pair<std::string, std::vector<double>>>& named);
 
-/// What the analyst insisted on, in the stages before and in this one, as one line for the metadata of maps; "" for
-/// nothing.
-std::string accepted_words(const RunSummary& summary);
-
 /// Volume under a thickness raster, NaN as nothing [m3]. Summed in extended precision: it is compared to 1e-9.
 double volume_under(const std::vector<double>& thickness, double cell);
 

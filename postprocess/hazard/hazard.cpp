@@ -6,7 +6,6 @@
 
 #include "common/gis/dataset_files.hpp"
 #include "common/gis/polygons.hpp"
-#include "common/run/places.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -15,7 +14,7 @@ namespace {
 std::vector<MapPolygon> obstacles_in(const RunSummary& run) {
   constexpr std::string_view kind = "obstacle ";
   std::vector<MapPolygon> polygons;
-  for (const MapPlace& place : places_in(run.provenance)) {
+  for (const MapPlace& place : run.places) {
     if (!place.words.starts_with(kind)) continue;
     for (const auto& ring : place.rings)
       if (ring.size() > 2) polygons.push_back({{ring}, {}, place.words.substr(kind.size())});

@@ -26,7 +26,7 @@ struct Hazard {
 /// The files that hazard_of() reads, with what lies beside them.
 std::vector<std::filesystem::path> hazard_inputs(const Options& options);
 
-/// Computes it. Obstacles are those that the run names with their places (common/run/places.hpp). Throws DataError
+/// Computes it. Obstacles are those that the run names with their places (common/map/places.hpp). Throws DataError
 /// where a file of polygons cannot be read.
 Hazard hazard_of(const Run& run, const Options& options);
 

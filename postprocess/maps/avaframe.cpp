@@ -11,7 +11,6 @@
 
 #include "common/gis/geotiff.hpp"
 #include "common/map/slope.hpp"
-#include "common/run/places.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
@@ -54,7 +53,7 @@ RasterTags tags_of(const Run& run, const Product& product) {
        {"RELEASE_VOLUME_MEANING", "vertical thickness over map area, or normal thickness over the area of the slope"},
        {"RELEASE_VOLUME_IF_NORMAL_WERE_VERTICAL_M3", fmt::format("{:.10g}", misread)},
        {"SOURCE", "Talus " + run.summary.version}}};
-  if (const std::string accepted = accepted_words(run.summary); !accepted.empty())
+  if (const std::string accepted = accepted_line(run.summary.findings); !accepted.empty())
     tags.metadata.emplace_back("ACCEPTED", accepted);
   return tags;
 }
@@ -110,7 +109,7 @@ std::string settings_text(const Run& run, const fs::path& run_file) {
   for (const auto& [key, value] : run.summary.provenance) {
     if (key == "command" || key == "hardware" || key == "version") continue;
     if (key == run_id || key == domain_id || key == recipe_of_domain || key == recipe_of_run ||
-        key == obstacles_checksum || is_place(key))
+        key == obstacles_checksum)
       continue;
     const auto checksum = key.starts_with("input ") ? value.find("sha256 ") : std::string::npos;
     text += key + " = " + (checksum == std::string::npos ? value : value.substr(checksum)) + "\n";

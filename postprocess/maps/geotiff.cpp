@@ -72,7 +72,7 @@ Files write_geotiffs(const std::filesystem::path& folder, const Run& run) {
         {"TIME_END_S", fmt::format("{}", run.summary.time_end)},
         {"NODATA_MEANING", meaning_of_nodata(zero_inside)},
         {"SOURCE", "Talus " + run.summary.version}};
-    if (const std::string accepted = accepted_words(run.summary); !accepted.empty())
+    if (const std::string accepted = accepted_line(run.summary.findings); !accepted.empty())
       tags.metadata.emplace_back("ACCEPTED", accepted);
     if (!run.summary.sanity.words.empty()) tags.metadata.emplace_back("SANITY", run.summary.sanity.words);
     write_cog(*file++, raster, tags);

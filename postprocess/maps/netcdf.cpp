@@ -39,7 +39,8 @@ void describe_file(Nc& nc, const Run& run, const NetcdfNotes& notes) {
           fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), notes.command_line));
   const std::string id = fact(s.provenance, run_id);
   nc.text(NC_GLOBAL, "run_id", id.empty() ? "not known" : id);
-  if (const std::string accepted = accepted_words(s); !accepted.empty()) nc.text(NC_GLOBAL, "accepted", accepted);
+  if (const std::string accepted = accepted_line(s.findings); !accepted.empty())
+    nc.text(NC_GLOBAL, "accepted", accepted);
   if (!s.sanity.words.empty()) nc.text(NC_GLOBAL, "sanity", s.sanity.words);
   nc.text(NC_GLOBAL, "comment",
           "Thickness is vertical (along the plumb line), not normal to the slope, and counts released volume. Cells "

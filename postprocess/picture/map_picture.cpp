@@ -68,7 +68,7 @@ Canvas draw_map(const PictureInput& input) {
   draw_contours(canvas, view, maps, contours);
   draw_outlines(canvas, view, maps, input);
   if (input.hazard != nullptr) draw_hazard(canvas, view, input.run.maps.grid, *input.hazard);
-  draw_places(canvas, view, places_in(input.run.summary.provenance));
+  draw_places(canvas, view, input.run.summary.places);
   canvas.unclip();
   canvas.frame(view.box, {{0.1, 0.1, 0.12}, 2.5, {}, 1});
   draw_coordinates(canvas, view);

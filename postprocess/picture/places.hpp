@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "common/run/places.hpp"
+#include "common/map/places.hpp"
 #include "postprocess/picture/view.hpp"
 
 namespace talus::postprocess {

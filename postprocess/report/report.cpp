@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
@@ -75,7 +76,8 @@ std::vector<StageText> texts_of_stages(const Job& job) {
     const std::filesystem::path file = job.file.parent_path() / (std::string(stage) + ".used.toml");
     std::optional<std::string> text = text_if_there(file);
     if (text && !is_used_recipe_of(*text, id)) {
-      log_warning(fmt::format("{}: it is of another run than {}; the report leaves it out", file.string(), id));
+      warn("used-recipe-of-another-run",
+           fmt::format("{}: it is of another run than {}; the report leaves it out", file.string(), id));
       text.reset();
     }
     texts.push_back({stage, std::move(text)});

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "common/map/slope.hpp"
 #include "common/recipe/used.hpp"
 #include "common/run/mobility.hpp"
-#include "common/run/places.hpp"
-#include "common/stage/acceptance.hpp"
+#include "common/stage/findings.hpp"
 #include "postprocess/budget/budget_table.hpp"
 #include "postprocess/fields/release.hpp"
 #include "postprocess/hazard/hazard.hpp"
@@ -53,7 +54,10 @@ Json entry_json(const ScoreEntry& entry) {
 }  // namespace
 
 Json score_json(const Score& score) {
-  Json json{{"sections", Json::array()}, {"not_scored", Json::array()}, {"notes", score.notes}};
+  Json json{{"sections", Json::array()},
+            {"not_scored", Json::array()},
+            {"notes", score.notes},
+            {"findings", Json::parse(to_json(score.findings))}};
   for (const auto& section : score.sections) {
     auto entries = Json::array();
     for (const auto& entry : section.entries) entries.push_back(entry_json(entry));
@@ -147,7 +151,7 @@ Json extremes_at(const std::string& place, const RunHistory& history) {
 Json places_json(const ReportInput& input) {
   auto list = Json::array();
   const Window window = shown_window(input);
-  for (const MapPlace& place : places_in(input.run.summary.provenance)) {
+  for (const MapPlace& place : input.run.summary.places) {
     auto rings = Json::array();
     for (const auto& ring : place.rings) {
       auto flat = Json::array();
@@ -168,6 +172,13 @@ Json places_json(const ReportInput& input) {
 
 namespace {
 
+std::string accepted_words(const BudgetLine& line) {
+  std::string text;
+  for (const auto& [name, words] : line.run.accepted)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name.substr(name.find('.') + 1), words);
+  return text;
+}
+
 Json budget_line_json(const BudgetLine& line) {
   Json json{{"name", line.run.name},
             {"kind", kind_name(line.row->kind)},
@@ -177,7 +188,7 @@ Json budget_line_json(const BudgetLine& line) {
             {"failed", line.run.state == BudgetState::failed},
             {"reason", line.run.reason},
             {"values", line.run.values},
-            {"accepted", accepted_line(line.run.accepted)},
+            {"accepted", accepted_words(line)},
             {"warnings", line.run.warnings},
             {"elsewhere", finite_or_null(line.elsewhere)},
             {"overlap", finite_or_null(line.overlap)},

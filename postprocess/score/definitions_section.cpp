@@ -3,8 +3,6 @@
 // The words under score.txt: what the numbers mean.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {
@@ -89,34 +87,9 @@ void of_error(const Scored& scored, Sheet& sheet) {
         "the score.");
 }
 
-/// What the stages before warned of, and advised.
-void of_stages(const RunSummary& run, Sheet& sheet) {
-  for (const auto& [name, words] : run.provenance) {
-    if (name.starts_with("warning.")) sheet.note("Warning: " + words + ".");
-    if (name.starts_with("advice.")) sheet.note("Advice: " + words + ".");
-  }
-}
-
-/// A run that ended with its simulated time, while more was in motion than this part of its peak, was not at rest.
-constexpr double at_rest = 0.01;
-
-void of_end(const Run& run, Sheet& sheet) {
-  const HistoryColumn* kinetic = run.history.find("kinetic_J");
-  if (kinetic == nullptr || kinetic->values.empty() || run.summary.stop_reason != "end of the simulated time") return;
-  const double peak = *std::max_element(kinetic->values.begin(), kinetic->values.end()), last = kinetic->values.back();
-  if (!(last > at_rest * peak)) return;
-  sheet.note(
-      fmt::format("Warning: the run ended before rest, at {:.3g} s with {:.3g} % of its largest kinetic energy: "
-                  "the deposit is no final one. Give a larger end_time_s in [solve], and stop_kinetic_fraction "
-                  "= 0.001, which ends the run at rest.",
-                  run.summary.time_end, 100 * last / peak));
-}
-
 }  // namespace
 
 void add_definitions(const Scored& scored, Sheet& sheet) {
-  of_end(scored.run, sheet);
-  of_stages(scored.run.summary, sheet);
   of_run(scored, sheet);
   if (scored.survey == nullptr) return;
   of_maps(*scored.survey, sheet);

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the run itself says: volumes, cost, sanity, extent.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
 #include "common/map/statistics.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/release.hpp"
@@ -102,6 +105,20 @@ void extent(const Scored& scored, Sheet& sheet) {
 }
 
 }  // namespace
+
+void warn_of_end(const Run& run) {
+  constexpr double at_rest = 0.01;  // of the largest kinetic energy
+  const HistoryColumn* kinetic = run.history.find("kinetic_J");
+  if (kinetic == nullptr || kinetic->values.empty() || run.summary.stop_reason != "end of the simulated time") return;
+  const double peak = *std::max_element(kinetic->values.begin(), kinetic->values.end()), last = kinetic->values.back();
+  if (!(last > at_rest * peak)) return;
+  warn("ended-before-rest",
+       fmt::format("the run ended before rest, at {:.3g} s with {:.3g} % of its largest kinetic energy: the deposit is "
+                   "no final one. Give a larger end_time_s in [solve], and stop_kinetic_fraction = 0.001, which ends "
+                   "the run at rest",
+                   run.summary.time_end, 100 * last / peak),
+       {{"kinetic_energy_share", last / peak, "1"}, {"time", run.summary.time_end, "s"}});
+}
 
 void add_run(const Scored& scored, Sheet& sheet) {
   volumes(scored, sheet);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/score/score.hpp"
 
-#include "common/stage/acceptance.hpp"
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {
@@ -15,18 +14,6 @@ std::optional<double> Score::number(const std::string& key) const {
   }
   return std::nullopt;
 }
-
-namespace {
-
-/// What was refused as implausible, and insisted on.
-void add_accepted(const Run& run, Sheet& sheet) {
-  const auto accepted = accepted_in(run.summary.provenance);
-  if (accepted.empty()) return;
-  sheet.section("Accepted by the analyst");
-  for (const auto& [name, words] : accepted) sheet.text("accepted." + name, name, words);
-}
-
-}  // namespace
 
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg,
                  const Hazard* hazard) {
@@ -43,9 +30,10 @@ Score make_score(const Run& run, const Options& options, const std::optional<Sur
   } else {
     sheet.skip({"footprint_csi", "deposit_csi", "thickness_rmse_m", "thickness_bias_m"}, "no survey is given");
   }
-  add_accepted(run, sheet);
   add_definitions(scored, sheet);
-  return sheet.take();
+  Score score = sheet.take();
+  score.findings = run.summary.findings;
+  return score;
 }
 
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey) {

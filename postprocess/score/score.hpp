@@ -52,7 +52,8 @@ struct Score {
   std::string title;
   std::vector<ScoreSection> sections;
   std::vector<std::pair<std::string, std::string>> not_scored;  ///< key, why it has no value
-  std::vector<std::string> notes;                               ///< definitions, warnings
+  std::vector<std::string> notes;                               ///< definitions
+  std::vector<Finding> findings;                                ///< of all stages
 
   /// The number under a key; empty where it is absent.
   std::optional<double> number(const std::string& key) const;
@@ -62,13 +63,17 @@ struct Score {
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg,
                  const Hazard* hazard = nullptr);
 
+/// Warns of a run that ended with its simulated time, and not at rest.
+void warn_of_end(const Run& run);
+
 /// Scores a run along thalweg_of(run, options).
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey);
 
-/// One flat object: key -> value; a value that does not exist is absent, and `not_scored` says why.
+/// One flat object: key -> value; a value that does not exist is absent, and `not_scored` says why. `findings` is an
+/// array of objects.
 std::string to_json(const Score& score);
 
-/// A score as an aligned table with the definitions below it.
+/// A score as an aligned table with the findings and the definitions below it.
 std::string to_table(const Score& score);
 
 }  // namespace talus::postprocess

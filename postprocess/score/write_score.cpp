@@ -37,6 +37,12 @@ std::string value_text(const ScoreEntry& entry) {
 
 bool is_text(const ScoreEntry& entry) { return std::holds_alternative<std::string>(entry.value); }
 
+/// How a finding begins: "Warning of [solve],".
+std::string heading_of(const Finding& finding) {
+  const char* const words[] = {"Advice", "Warning", "Refused and accepted"};
+  return fmt::format("{} in [{}],", words[static_cast<std::size_t>(finding.severity)], finding.stage);
+}
+
 /// Break at spaces so that no line is longer than `width`.
 std::string wrapped(const std::string& text, std::size_t width, const std::string& indent) {
   std::string lines, line;
@@ -65,6 +71,7 @@ std::string to_json(const Score& score) {
   }
   auto& absent = json["not_scored"] = nlohmann::ordered_json::object();
   for (const auto& [key, why] : score.not_scored) absent[key] = why;
+  json["findings"] = nlohmann::ordered_json::parse(to_json(score.findings));
   json["notes"] = score.notes;
   return json.dump(2) + "\n";
 }
@@ -89,6 +96,9 @@ std::string to_table(const Score& score) {
   }
   if (!score.not_scored.empty()) text += "\nNot scored\n";
   for (const auto& [key, why] : score.not_scored) text += fmt::format("  {:<{}}  {}\n", key, label_width, why);
+  if (!score.findings.empty()) text += "\nFindings\n";
+  for (const Finding& f : score.findings)
+    text += "- " + wrapped(fmt::format("{} \"{}\": {}", heading_of(f), f.name, f.message), 110, "  ") + "\n";
   text += "\n";
   for (const auto& note : score.notes) text += "- " + wrapped(note, 110, "  ") + "\n";
   return text;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/stage/findings.hpp"
 #include "common/stage/input_file.hpp"
 
 namespace talus::postprocess {
@@ -54,12 +55,12 @@ FoundSurvey read_found_survey(const std::filesystem::path& out) {
 
 bool lacks_error(const std::filesystem::path& out) { return !error_known(read_json(out)); }
 
-void judge_outside(const FoundSurvey& found, const std::filesystem::path& out, Acceptance& acceptance) {
+void judge_outside(const FoundSurvey& found, const std::filesystem::path& out) {
   if (!found.outside_is_large) return;
-  acceptance.judge({"change-outside-slide",
-                    {file_in(out).string() + ": " + found.outside_words,
-                     "the surveyed deposit, and every score against it, would lack what belongs to the slide",
-                     "Look at survey/survey.qgs, set these keys, and run talus-preprocess again"}});
+  refuse_unless_accepted("change-outside-slide",
+                         {file_in(out).string() + ": " + found.outside_words,
+                          "the surveyed deposit, and every score against it, would lack what belongs to the slide",
+                          "Look at survey/survey.qgs, set these keys, and run talus-preprocess again"});
 }
 
 void require_whole_survey(const std::filesystem::path& out) {

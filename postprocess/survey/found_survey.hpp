@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <string>
 
-#include "common/stage/acceptance.hpp"
-
 namespace talus::postprocess {
 
 /// What OUT/survey/survey.json says.
@@ -26,9 +24,9 @@ FoundSurvey read_found_survey(const std::filesystem::path& out);
 /// True where it says that the error is not known, so that there is no raster of it. Never throws.
 bool lacks_error(const std::filesystem::path& out);
 
-/// Throws DataError unless accepted ("change-outside-slide") where much changed outside the slide: the deposit, and
-/// with it every score, would lack it.
-void judge_outside(const FoundSurvey& found, const std::filesystem::path& out, Acceptance& acceptance);
+/// Refuses, unless accepted ("change-outside-slide"), a survey in which much changed outside the slide: the deposit,
+/// and with it every score, would lack it.
+void judge_outside(const FoundSurvey& found, const std::filesystem::path& out);
 
 /// Refuses (DataError) a survey that talus-preprocess did not come to the end of.
 void require_whole_survey(const std::filesystem::path& out);

@@ -9,11 +9,12 @@
 
 #include "common/gis/resampling.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 #include "postprocess/survey/survey_grid.hpp"
 
 namespace talus::postprocess {
 
-void judge_order(const Survey& survey, const RunMaps& maps, Acceptance& acceptance) {
+void judge_order(const Survey& survey, const RunMaps& maps) {
   if (!survey.deposit_is_change) return;
   constexpr double tells = 0.1;  // of what fell: less that rose has no say in where mass went
   const Raster run_ground{maps.grid, maps.before};
@@ -30,11 +31,12 @@ void judge_order(const Survey& survey, const RunMaps& maps, Acceptance& acceptan
   if (!(fall > 0) || !(rise > tells * fall)) return;
   const double higher = moment[1].value() / rise - moment[0].value() / fall;
   if (!(higher > 0)) return;
-  acceptance.judge(
-      {"swapped-surveys",
-       {fmt::format("[postprocess.survey]: {} m3 rose and {} m3 fell", grouped(rise * area), grouped(fall * area)),
-        fmt::format("what rose lies {:.1f} m higher than what fell, and mass goes down", higher),
-        "Are before_dem and after_dem swapped, or is the difference before less after? Then turn them round"}});
+  refuse_unless_accepted(
+      "swapped-surveys",
+      {fmt::format("[postprocess.survey]: {} m3 rose and {} m3 fell", grouped(rise * area), grouped(fall * area)),
+       fmt::format("what rose lies {:.1f} m higher than what fell, and mass goes down", higher),
+       "Are before_dem and after_dem swapped, or is the difference before less after? Then turn them round"},
+      {{"rise", rise * area, "m3"}, {"fall", fall * area, "m3"}, {"higher", higher, "m"}});
 }
 
 }  // namespace talus::postprocess

@@ -11,7 +11,7 @@
 #include "common/error.hpp"
 #include "common/gis/read_raster.hpp"
 #include "common/gis/resampling.hpp"
-#include "common/stage/stage.hpp"
+#include "common/stage/findings.hpp"
 #include "postprocess/survey/survey_grid.hpp"
 
 namespace talus::postprocess {
@@ -63,12 +63,9 @@ void read_error(const SurveyOptions& options, const RunMaps& maps, Survey& surve
   if (options.correlation_length == 0 && !options.sigma.empty())
     error.correlation_length = std::max(0.0, raster_item(options.sigma, "CORRELATION_LENGTH_M").value_or(0));
   if (error.correlation_length > 0 || options.resamples == 0) return;
-  const std::string warning =
-      "The range of the survey's errors is not known: they are drawn for every cell for itself, which makes the spread "
-      "of "
-      "scores too small. Give correlation_length_m.";
-  survey.notes.push_back("Warning: " + warning);
-  log_warning("[postprocess.survey] " + warning);
+  warn("unknown-correlation-length",
+       "[postprocess.survey] The range of the survey's errors is not known: they are drawn for every cell for itself, "
+       "which makes the spread of scores too small. Give correlation_length_m.");
 }
 
 DetectedChange detected(const Survey& survey, const std::vector<double>& value) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/domain/domain_facts.hpp"
-#include "common/stage/console.hpp"
+#include "common/stage/findings.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -63,7 +63,7 @@ bool BudgetDomains::is_there(const std::string& name, const Facts& marks) const 
 }
 
 void BudgetDomains::leave_out(const std::string& name, const std::string& why) {
-  log_warning(fmt::format("budget: no domain \"{}\": {}", name, why));
+  warn("budget-domain-missing", fmt::format("budget: no domain \"{}\": {}", name, why));
   told_ += fmt::format("{}: left out: {}\n", name, why);
   remove_for_good(paths_.domain(name));
 }
@@ -73,7 +73,8 @@ void BudgetDomains::write(const Wanted& wanted, Prepared&& made, Facts marks) {
   marks.emplace_back(budget_values, fmt::format("{}", fmt::join(wanted.values, "\n")));
   Domain& domain = made.domain;
   domain.provenance = provenance_of(context_, base_.inputs, marks, facts_of(made));
-  domain.provenance.insert(domain.provenance.end(), base_.obstacles.begin(), base_.obstacles.end());
+  domain.provenance.insert(domain.provenance.end(), base_.checksums.begin(), base_.checksums.end());
+  domain.obstacles = base_.obstacles;
   write_domain(paths_.domain(wanted.name), domain);
 }
 
@@ -94,18 +95,18 @@ void BudgetDomains::make(const Wanted& wanted, const Make& prepared) {
 template <class Make>
 std::optional<Prepared> BudgetDomains::tried(const std::string& name, const Make& prepared) {
   std::optional<Prepared> made;
-  std::vector<std::string> warnings;
+  std::vector<Finding> warnings;
   try {
-    const QuietThread quiet;
+    const Findings found("preprocess", {}, Findings::Log::kept_back);
     made.emplace(prepared());
-    warnings = quiet.warnings();
+    warnings = found.list();
   } catch (const RecipeError& error) {
     leave_out(name, error.what());
   } catch (const DataError& error) {
     require_unchanged(base_.inputs);
     leave_out(name, error.what());
   }
-  for (const std::string& warning : warnings) log_warning(fmt::format("budget, {}: {}", name, warning));
+  for (const Finding& found : warnings) warn(found.name, fmt::format("budget, {}: {}", name, found.message));
   return made;
 }
 

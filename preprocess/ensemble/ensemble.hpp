@@ -43,7 +43,8 @@ struct EnsembleBase {
   SceneRasters scene;  ///< before anything is scaled, laid or seeded
   SurveyMemory& memory;
   Facts inputs, marks;  ///< of the base domain
-  Facts obstacles;      ///< what the base domain says of obstacles.vdb; empty: there is none
+  Facts checksums;      ///< of obstacles.vdb; empty: there is none
+  std::vector<MapPlace> obstacles;
 };
 
 /// Refuses (RecipeError) a key of [preprocess] that changes nothing of the domain: between its smallest value and its

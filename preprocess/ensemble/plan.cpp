@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/error.hpp"
-#include "common/stage/console.hpp"
+#include "common/stage/findings.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
 
 namespace talus::preprocess {
@@ -19,7 +19,7 @@ std::vector<double> extremes_of(const MemberColumn& column) {
 
 /// The domain of the base with one other value.
 Domain domain_with(const recipe::Recipe& recipe, MemberColumn column, double value, const EnsembleBase& base) {
-  const QuietThread quiet;
+  const Findings found("preprocess", {}, Findings::Log::kept_back);
   column.values = {value};
   MemberTable one;
   one.count = 1;

@@ -15,7 +15,7 @@
 #include "common/error.hpp"
 #include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
-#include "common/stage/console.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/in_threads.hpp"
 #include "common/stage/machine.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
@@ -52,7 +52,7 @@ class MemberDomains {
   Prepared prepared(std::int64_t member) const;
   std::optional<Prepared> prepared_or_failed(std::int64_t member, const Facts& inputs);
   void check_grid(std::int64_t member, const Prepared& made) const;
-  void note_warnings(std::int64_t member, const std::vector<std::string>& warnings);
+  void note_warnings(std::int64_t member, const std::vector<Finding>& findings);
   void note_faults(std::vector<Fault> faults);
   void note_failure(std::int64_t member, std::string words);
   void say_failures() const;
@@ -158,7 +158,7 @@ void MemberDomains::make(std::int64_t member) {
     ++kept_;
     return;
   }
-  const QuietThread log;
+  const Findings found("preprocess", {}, Findings::Log::kept_back);
   std::optional<Prepared> made = prepared_or_failed(member, inputs);
   if (!made) {
     remove_for_good(file);  // of an ensemble before
@@ -177,16 +177,19 @@ void MemberDomains::make(std::int64_t member) {
   }
   Facts& provenance = made->domain.provenance;
   provenance = provenance_of(context_, inputs, marks, facts_of(*made));
-  provenance.insert(provenance.end(), base_.obstacles.begin(), base_.obstacles.end());
+  provenance.insert(provenance.end(), base_.checksums.begin(), base_.checksums.end());
+  made->domain.obstacles = base_.obstacles;
   write_domain(file, made->domain);
   ++made_;
-  note_warnings(member, log.warnings());
+  note_warnings(member, found.list());
 }
 
-void MemberDomains::note_warnings(std::int64_t member, const std::vector<std::string>& warnings) {
+void MemberDomains::note_warnings(std::int64_t member, const std::vector<Finding>& findings) {
   static const std::regex number("[0-9][0-9.,e+-]*");
   const std::lock_guard lock(mutex_);
-  for (const std::string& warning : warnings) {
+  for (const Finding& finding : findings) {
+    if (std::ranges::find(base_.scene.findings, finding) != base_.scene.findings.end()) continue;
+    const std::string& warning = finding.message;
     const std::string kind = std::regex_replace(warning, number, "#");
     auto [found, is_new] = warnings_.try_emplace(kind, member, 0);
     ++found->second.second;
@@ -234,10 +237,11 @@ void MemberDomains::say_failures() const {
   constexpr std::size_t most = 5;
   std::size_t said = 0;
   for (const auto& [member, words] : failures_)
-    if (++said <= most) log_warning(fmt::format("{} is left out: {}", plan_.table.name_of(member), words));
+    if (++said <= most)
+      warn("member-without-domain", fmt::format("{} is left out: {}", plan_.table.name_of(member), words));
   if (said == 0) return;
-  log_warning(
-      fmt::format("{} of {} members have no domain: talus-solve counts them as failed", said, plan_.table.count));
+  warn("members-without-domain",
+       fmt::format("{} of {} members have no domain: talus-solve counts them as failed", said, plan_.table.count));
   if (too_many_failed())
     throw DataError(
         Fault{fmt::format("[ensemble]: {} members have no domain, the first is {}", said, failures_.begin()->first),
@@ -262,9 +266,10 @@ void MemberDomains::work(std::int64_t member) {
 
 void MemberDomains::say_end(double seconds) const {
   for (const auto& [kind, members] : warnings_)
-    log_warning(fmt::format("{}{}: {}", plan_.table.name_of(members.first),
-                            members.second > 1 ? fmt::format(" and {} others likewise", members.second - 1) : "",
-                            first_words_.at(kind)));
+    warn("members-warn",
+         fmt::format("{}{}: {}", plan_.table.name_of(members.first),
+                     members.second > 1 ? fmt::format(" and {} others likewise", members.second - 1) : "",
+                     first_words_.at(kind)));
   double bytes = 0;
   for (const std::int64_t k : todo_)
     if (!failures_.contains(k)) bytes += static_cast<double>(fs::file_size(paths_.domain(k)));

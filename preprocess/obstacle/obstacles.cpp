@@ -12,7 +12,6 @@
 #include "common/error.hpp"
 #include "common/map/bilinear.hpp"
 #include "common/map/polygon.hpp"
-#include "common/run/places.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 
 namespace talus::preprocess {
@@ -125,16 +124,14 @@ std::vector<SolidBody> upright_obstacles(const std::vector<ObstacleOptions>& obs
   return bodies;
 }
 
-std::vector<std::pair<std::string, std::string>> obstacle_places(const std::vector<ObstacleOptions>& obstacles,
-                                                                 const std::string& crs_wkt) {
-  std::vector<std::pair<std::string, std::string>> facts;
+std::vector<MapPlace> obstacle_places(const std::vector<ObstacleOptions>& obstacles, const std::string& crs_wkt) {
+  std::vector<MapPlace> places;
   for (const ObstacleOptions& o : obstacles) {
-    MapPlace place{"obstacle " + o.name, {}};
+    places.push_back({"obstacle " + o.name, {}});
     for (const MapPolygon& polygon : read_valid_polygons(o.polygons, crs_wkt))
-      place.rings.push_back(polygon.rings.front());
-    facts.push_back(place_fact(place));
+      places.back().rings.push_back(polygon.rings.front());
   }
-  return facts;
+  return places;
 }
 
 double obstacle_voxel(double spacing, double layer_height) { return 0.25 * std::min(spacing, layer_height); }

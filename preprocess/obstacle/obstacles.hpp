@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/domain/level_set.hpp"
+#include "common/map/places.hpp"
 #include "common/map/raster.hpp"
 #include "preprocess/options/options.hpp"
 
@@ -18,9 +19,8 @@ namespace talus::preprocess {
 std::vector<SolidBody> upright_obstacles(const std::vector<ObstacleOptions>& obstacles, const Raster& ground,
                                          double depth);
 
-/// Where the obstacles stand on a map of this CRS, as facts (common/run/places.hpp). Throws DataError as above.
-std::vector<std::pair<std::string, std::string>> obstacle_places(const std::vector<ObstacleOptions>& obstacles,
-                                                                 const std::string& crs_wkt);
+/// Where the obstacles stand on a map of this CRS. Throws DataError as above.
+std::vector<MapPlace> obstacle_places(const std::vector<ObstacleOptions>& obstacles, const std::string& crs_wkt);
 
 /// Voxels that show a body as the background grid will meet it, and thin walls as well: a quarter of the smaller
 /// spacing [m].

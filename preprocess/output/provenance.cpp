@@ -17,8 +17,6 @@ Facts facts_of(const Prepared& prepared) {
               {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : as_facts(prepared.total)) facts.push_back(std::move(fact));
-  facts.insert(facts.end(), prepared.accepted.begin(), prepared.accepted.end());
-  if (!prepared.coarse.empty()) facts.emplace_back("warning.coarse_grid", prepared.coarse);
   if (prepared.sliding_surface) {
     facts.emplace_back(
         "sliding_surface",

@@ -13,7 +13,7 @@
 
 namespace talus::preprocess {
 
-/// Grid, points and volumes of a domain, and what the recipe insists on.
+/// Grid, points and volumes of a domain.
 Facts facts_of(const Prepared& prepared);
 
 /// Files with their checksums.

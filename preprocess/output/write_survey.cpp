@@ -16,6 +16,7 @@
 #include "common/map/sum.hpp"
 #include "common/qgis/project.hpp"
 #include "common/qgis/style.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/survey/order.hpp"
@@ -245,7 +246,7 @@ std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey,
   const Budgets budgets = blocks.walk();
   if (const auto wrong = wrong_order(blocks.order(), {survey.before.file.string(), survey.after.file.string()});
       wrong && !prepared)
-    log_warning(to_string(wrong->fault));
+    warn("swapped-surveys", to_string(*wrong));
   std::vector<fs::path> files;
   for (const char* name : {"before_aligned.tif", "after_aligned.tif"}) {
     files.push_back(folder / name);

@@ -12,6 +12,7 @@
 
 #include "common/map/statistics.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 #include "preprocess/particles/seed.hpp"
 
 namespace talus::preprocess {
@@ -59,11 +60,10 @@ Fineness fineness_of(const Raster& thickness, double layer_height) {
   return f;
 }
 
-std::optional<std::string> too_coarse(const Raster& thickness, double layer_height, std::size_t points,
-                                      const GridOptions& grid) {
+void warn_of_coarseness(const Raster& thickness, double layer_height, std::size_t points, const GridOptions& grid) {
   const Fineness f = fineness_of(thickness, layer_height);
   const bool few_layers = grid.layer_height > 0 && f.layers < enough_layers;
-  if (!(f.across > 0) || (f.across >= enough_across && !few_layers)) return std::nullopt;
+  if (!(f.across > 0) || (f.across >= enough_across && !few_layers)) return;
   const double cell = thickness.grid.cell,
                spacing = f.across < enough_across ? round_down(f.width / enough_across) : cell,
                layer = std::min({round_down(f.median / enough_layers), spacing, layer_height});
@@ -75,13 +75,17 @@ std::optional<std::string> too_coarse(const Raster& thickness, double layer_heig
   if (spacing < cell) keys.push_back(fmt::format("spacing_m = {:g}", spacing));
   if (layer < layer_height || keys.empty() || grid.layer_height > 0)
     keys.push_back(fmt::format("layer_height_m = {:g}", layer));
-  return fmt::format(
-      "the grid is coarse for this release: about {:.3g} m wide, it has {:.2g} cells of {:g} m across, and over its "
-      "thickness of {:.2g} m (median by volume) {:.2g} layers of {:g} m; {} material points are all of it. Run-out and "
-      "thickness depend on the cells then. For {:g} cells and {:g} layers put {} into [preprocess.grid] (some {} "
-      "points)",
-      f.width, f.across, cell, f.median, f.layers, layer_height, grouped(static_cast<double>(points)), enough_across,
-      enough_layers, fmt::join(keys, " and "), grouped(wanted));
+  warn("coarse-grid",
+       fmt::format(
+           "the grid is coarse for this release: about {:.3g} m wide, it has {:.2g} cells of {:g} m across, and over "
+           "its "
+           "thickness of {:.2g} m (median by volume) {:.2g} layers of {:g} m; {} material points are all of it. "
+           "Run-out and "
+           "thickness depend on the cells then. For {:g} cells and {:g} layers put {} into [preprocess.grid] (some {} "
+           "points)",
+           f.width, f.across, cell, f.median, f.layers, layer_height, grouped(static_cast<double>(points)),
+           enough_across, enough_layers, fmt::join(keys, " and "), grouped(wanted)),
+       {{"cells_across", f.across, "1"}, {"layers", f.layers, "1"}});
 }
 
 }  // namespace talus::preprocess

@@ -4,8 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
-#include <string>
 
 #include "common/map/raster.hpp"
 #include "preprocess/options/options.hpp"
@@ -23,9 +21,8 @@ struct Fineness {
 /// That of a release of `thickness` [m] on layers of `layer_height` [m]; zeros without release.
 Fineness fineness_of(const Raster& thickness, double layer_height);
 
-/// What to warn of, with the numbers to put in: fewer than eight cells across the release (half of its columns lie at
-/// its rim then), or fewer than two layers where the recipe gives their height. Empty where neither is so.
-std::optional<std::string> too_coarse(const Raster& thickness, double layer_height, std::size_t points,
-                                      const GridOptions& grid);
+/// Warns, with the numbers to put in, of fewer than eight cells across the release (half of its columns lie at its rim
+/// then), and of fewer than two layers where the recipe gives their height.
+void warn_of_coarseness(const Raster& thickness, double layer_height, std::size_t points, const GridOptions& grid);
 
 }  // namespace talus::preprocess

@@ -10,6 +10,7 @@
 #include "common/error.hpp"
 #include "common/gis/crs.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"
@@ -91,15 +92,17 @@ void report(const SlidingSurface& s, const Outline& outline) {
                   "mean, curvature {:.3g} 1/m",
                   grouped(outline.area), grouped(s.volume), s.depth, s.volume / outline.area, s.curvature));
   if (s.curvature < 0) {
-    log_warning(
+    warn(
+        "convex-sliding-surface",
         "sliding surface: it bulges upwards, as the ground within the outline does: what is asked for is less than the "
         "surface without curvature would have");
   }
   if (s.touching > 0) {
-    log_warning(
-        fmt::format("sliding surface: in {} of {} cells within the outline it would stand above the ground, and "
-                    "follows the ground: nothing fails there",
-                    s.touching, outline.cells.size()));
+    warn("sliding-surface-above-ground",
+         fmt::format("sliding surface: in {} of {} cells within the outline it would stand above the ground, and "
+                     "follows the ground: nothing fails there",
+                     s.touching, outline.cells.size()),
+         {{"cells", static_cast<double>(s.touching), "1"}});
   }
   double worst = 0;
   for (double misfit : s.misfit) worst = std::max(worst, std::abs(misfit));
@@ -113,11 +116,14 @@ SlidingSurface compute(const Raster& before, const Outline& outline, const Slidi
   if (o.depth > 0) return surface_of_depth(before, outline, o.depth);
   if (o.volume > 0) return surface_of_volume(before, outline, o.volume);
   const double volume = volume_by_area(outline.area);
-  log_warning(fmt::format(
-      "sliding surface: NOTHING SAYS HOW DEEP IT LIES. Its volume is taken as {} m3, from the area of {} m2 by V = "
-      "0.074 A^1.450 (Guzzetti et al. 2009): an order of "
-      "magnitude, not a survey. Give depth_m, volume_m3 or depth_points in [preprocess.source.sliding_surface]",
-      grouped(volume), grouped(outline.area)));
+  warn(
+      "assumed-volume",
+      fmt::format(
+          "sliding surface: NOTHING SAYS HOW DEEP IT LIES. Its volume is taken as {} m3, from the area of {} m2 by V = "
+          "0.074 A^1.450 (Guzzetti et al. 2009): an order of "
+          "magnitude, not a survey. Give depth_m, volume_m3 or depth_points in [preprocess.source.sliding_surface]",
+          grouped(volume), grouped(outline.area)),
+      {{"volume", volume, "m3"}, {"area", outline.area, "m2"}});
   return surface_of_volume(before, outline, volume);
 }
 

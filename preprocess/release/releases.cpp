@@ -11,6 +11,7 @@
 #include "common/gis/read_raster.hpp"
 #include "common/map/polygon.hpp"
 #include "common/map/slope.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"
@@ -77,7 +78,8 @@ Raster from_polygons(const ReleaseOptions& options, const MapGrid& grid) {
       overlap = overlap || covered[i] > 1 + 1e-9;
     }
   }
-  if (overlap) log_warning(options.polygons.string() + ": its polygons overlap; their thicknesses add up there");
+  if (overlap)
+    warn("polygons-overlap", options.polygons.string() + ": its polygons overlap; their thicknesses add up there");
   return thickness;
 }
 

@@ -13,6 +13,7 @@
 #include "common/domain/bed_numbers.hpp"
 #include "common/error.hpp"
 #include "common/gis/feature_fields.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/surfaces.hpp"
@@ -152,7 +153,8 @@ void lay_bed_polygons(const std::filesystem::path& file, const Raster& ground,
     if (patches.empty()) continue;
     lay_number(number, patches, raster_named(bed, number, ground.grid));
     log_info(fmt::format("[preprocess.bed] polygons: {} of {} polygons, {:.0f} m2", number, patches.size(), area));
-    if (!(area > 0)) log_warning(fmt::format("{}: no ground of the scene lies in its polygons", file.string()));
+    if (!(area > 0))
+      warn("polygons-without-ground", fmt::format("{}: no ground of the scene lies in its polygons", file.string()));
   }
 }
 

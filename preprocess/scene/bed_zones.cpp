@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "common/error.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/surfaces.hpp"
@@ -89,7 +90,7 @@ void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
     double cells = 0;
     for (const double part : share) cells += part;
     if (!(cells > 0))
-      log_warning(place + ": no ground of the scene lies in it");
+      warn("zone-without-ground", place + ": no ground of the scene lies in it");
     else
       log_info(fmt::format("{}: {:.0f} m2", place, cells * ground.grid.cell * ground.grid.cell));
     if (zone.friction_coefficient || zone.added_coefficient)

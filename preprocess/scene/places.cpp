@@ -14,6 +14,7 @@
 #include "common/error.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/place_layer.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::preprocess {
@@ -95,8 +96,8 @@ void say_crs(const PlaceOptions& o, const PlaceLayer& layer, const std::string& 
   if (layer.crs_wkt.empty())
     log_info(fmt::format("{}: names no CRS, taken as in {}", o.file.string(), crs_name(crs_wkt)));
   else if (crs_wkt.empty())
-    log_warning(fmt::format("{}: is in {}, the scene names no CRS: coordinates are taken as they are", o.file.string(),
-                            crs_name(layer.crs_wkt)));
+    warn("scene-without-crs", fmt::format("{}: is in {}, the scene names no CRS: coordinates are taken as they are",
+                                          o.file.string(), crs_name(layer.crs_wkt)));
   else
     log_info(fmt::format("{}: brought from {} to {}", o.file.string(), crs_name(layer.crs_wkt), crs_name(crs_wkt)));
 }

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/map/slope.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory/laboratory.hpp"
@@ -126,8 +127,8 @@ void warn_at_edge(const Raster& thickness) {
               row = static_cast<int>(i / static_cast<std::size_t>(grid.columns));
     const bool edge = column == 0 || row == 0 || column == grid.columns - 1 || row == grid.rows - 1;
     if (!edge || !(thickness.values[i] > 0)) continue;
-    log_warning("the release reaches the edge of the working grid, at " + place_of(grid, i) +
-                ": part of it may lie beyond");
+    warn("release-at-edge",
+         "the release reaches the edge of the working grid, at " + place_of(grid, i) + ": part of it may lie beyond");
     return;
   }
 }
@@ -164,10 +165,12 @@ void judge_count(std::size_t points, const GridOptions& grid) {
     throw RecipeError(Fault{what, "points are numbered in 32 bits", mend});
   require_memory(bytes_per_seed * count, what, mend);
   if (count > many)
-    log_warning(to_string(Fault{what,
-                                fmt::format("to make so many takes long, and the solver needs about {:.0f} GB for them",
-                                            count * solver_bytes_per_point * 1e-9),
-                                mend}));
+    warn("many-points",
+         to_string(Fault{what,
+                         fmt::format("to make so many takes long, and the solver needs about {:.0f} GB for them",
+                                     count * solver_bytes_per_point * 1e-9),
+                         mend}),
+         {{"material_points", count, "1"}});
 }
 
 }  // namespace
@@ -206,20 +209,16 @@ Prepared prepare(const Options& given, Points points) {
 Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   scale_thickness(options.thickness_factor, scene);
   lay_erodible(options, scene);
+  const Findings found("preprocess");
   Prepared prepared;
-  prepared.accepted = std::move(scene.accepted);
   prepared.domain.release_thickness = total_thickness(scene, options.erodible.size());
   const Seeding seeding = seeding_of(options.grid, layer_height(options, prepared.domain.release_thickness));
   prepared.inputs = inputs_of(options);
   const bool laboratory = options.way() == Way::laboratory;
   prepared.point_count = laboratory ? count_box_points(options) : count_points(scene.releases, seeding);
   judge_count(prepared.point_count, options.grid);
-  if (!laboratory) {
-    prepared.coarse =
-        too_coarse(prepared.domain.release_thickness, seeding.layer_height, prepared.point_count, options.grid)
-            .value_or("");
-    if (!prepared.coarse.empty()) log_warning(prepared.coarse);
-  }
+  if (!laboratory)
+    warn_of_coarseness(prepared.domain.release_thickness, seeding.layer_height, prepared.point_count, options.grid);
 
   Domain& domain = prepared.domain;
   domain.grid = scene.bed.grid;
@@ -241,6 +240,8 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   prepared.sliding_surface = std::move(scene.sliding_surface);
   prepared.survey = std::move(scene.survey);
   prepared.slide = std::move(scene.slide);
+  domain.findings = std::move(scene.findings);
+  domain.findings.insert(domain.findings.end(), found.list().begin(), found.list().end());
   return prepared;
 }
 

@@ -32,8 +32,6 @@ struct Prepared {
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
   std::optional<Survey> survey = {};                   // where before and after are given
   std::optional<SurveyedSlide> slide = {};
-  std::string coarse = {};                                         // what is too coarse about the grid; "" = nothing
-  std::vector<std::pair<std::string, std::string>> accepted = {};  // facts of what the recipe insists on
 };
 
 /// The files that the options name.

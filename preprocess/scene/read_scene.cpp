@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/map/crop.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory/laboratory.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
@@ -42,30 +43,29 @@ SceneRasters from_source(Raster before, Source source) {
 }
 
 Surveyed surveyed(const Options& options) {
+  const auto before = static_cast<std::ptrdiff_t>(findings_so_far().size());
   Surveyed result{survey_of(options), {}, std::nullopt};
-  result.survey.accepted.meanwhile([&] {
-    std::vector<Filled> filled;
-    result.surfaces = align({&result.survey.before, &result.survey.after}, options, &filled);
-    result.slide = slide_on(result.survey, result.surfaces[0], filled);
-  });
+  std::vector<Filled> filled;
+  result.surfaces = align({&result.survey.before, &result.survey.after}, options, &filled);
+  result.slide = slide_on(result.survey, result.surfaces[0], filled);
+  const std::vector<Finding> all = findings_so_far();
+  result.findings.assign(all.begin() + before, all.end());
   return result;
 }
 
 SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory) {
-  auto [survey, surfaces, of_slide] = memory != nullptr ? memory->surveyed(options) : surveyed(options);
+  auto [survey, surfaces, of_slide, found] = memory != nullptr ? memory->surveyed(options) : surveyed(options);
   SurveyedSlide& slide = *of_slide;
   if (!survey.source.empty())
     survey.source =
         read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, options.source.choice());
-  Source source = survey.accepted.meanwhile([&, &of_survey = survey, &both = surfaces] {
-    return find_source(
-        {both[0], both[1], options.after_dem, false, of_survey.source, levels_of(of_survey, slide.sigma)},
-        options.source);
-  });
+  Source source =
+      find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
+                  options.source);
   const Change change = change_between(survey, {surfaces[0], surfaces[1]}, options.deposit, slide);
   judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
-              {options.before_dem.string(), options.after_dem.string(), survey.applied}, survey.accepted);
-  survey.accepted.settle();
+              {options.before_dem.string(), options.after_dem.string(), survey.applied});
+  settle_findings();
   delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
@@ -112,8 +112,10 @@ void warn_of_overlap(const std::vector<Release>& releases) {
         shared += releases[a].thickness.values[i] > 0 && releases[b].thickness.values[i] > 0;
       }
       if (shared > 0) {
-        log_warning(fmt::format("releases {} and {} share {} cells; there the second lies on the first",
-                                releases[a].name, releases[b].name, shared));
+        warn("releases-overlap",
+             fmt::format("releases {} and {} share {} cells; there the second lies on the first", releases[a].name,
+                         releases[b].name, shared),
+             {{"cells", static_cast<double>(shared), "1"}});
       }
     }
   }
@@ -138,18 +140,6 @@ SceneRasters from_laboratory(const Options& options) {
   SceneRasters scene{box_surface(options, ground), std::move(ground), {}};
   for (std::size_t b = 0; b < options.box.size(); ++b) scene.releases.push_back(box_release(options, b));
   return scene;
-}
-
-/// What the recipe insists on, of what was found in the scene. Surveys were looked at when they were compared.
-Acceptance judged(const Options& options, const SceneRasters& scene) {
-  if (scene.survey) return scene.survey->accepted;
-  Acceptance acceptance("preprocess", options.accept);
-  if (options.way() == Way::laboratory) return acceptance;
-  acceptance.collect();
-  judge_lengths(scene.bed.grid, options.working_crs, acceptance);
-  judge_heights(scene.before, {options.first_dem(), options.vertical_unit}, acceptance);
-  acceptance.settle();
-  return acceptance;
 }
 
 SceneRasters read_by_way(const Options& options, SurveyMemory* memory) {
@@ -190,7 +180,10 @@ Surveyed SurveyMemory::surveyed(const Options& options) {
   const std::string mark = mark_of(options);
   {
     const std::lock_guard lock(mutex_);
-    if (kept_ && mark == mark_) return *kept_;
+    if (kept_ && mark == mark_) {
+      add_findings(kept_->findings);
+      return *kept_;
+    }
   }
   Surveyed found = preprocess::surveyed(options);
   const std::lock_guard lock(mutex_);
@@ -210,10 +203,16 @@ Options resolved(Options options) {
 }
 
 SceneRasters read_scene(const Options& given, SurveyMemory* memory) {
-  SceneRasters scene = read_by_way(resolved(given), memory);
-  const Acceptance acceptance = judged(given, scene);
-  acceptance.warn_of_unmet();
-  scene.accepted = acceptance.facts();
+  Findings found("preprocess", given.accept);
+  SceneRasters scene;
+  found.settled([&] {
+    scene = read_by_way(resolved(given), memory);
+    if (scene.survey || given.way() == Way::laboratory) return;  // surveys were looked at when they were compared
+    judge_lengths(scene.bed.grid, given.working_crs);
+    judge_heights(scene.before, {given.first_dem(), given.vertical_unit});
+  });
+  warn_of_unused("preprocess", given.accept, found.list());
+  scene.findings = found.list();
   return scene;
 }
 
@@ -224,14 +223,12 @@ Survey survey_of(const Options& given) {
   Elevation after = read_elevation("after_dem", options.after_dem, reading(options));
   share_crs({&before, &after}, options.working_crs);
   Survey survey = compare_surveys(std::move(before), std::move(after), options);
-  survey.accepted = Acceptance("preprocess", options.accept);
-  survey.accepted.collect();
-  judge_lengths(survey.grid, given.working_crs, survey.accepted);
+  judge_lengths(survey.grid, given.working_crs);
   const MapGrid& grid = survey.grid;
   const int columns = std::min(enough, grid.columns), rows = std::min(enough, grid.rows);
   judge_heights(
       onto_grid(survey.before, cut(grid, {(grid.columns - columns) / 2, (grid.rows - rows) / 2, columns, rows})),
-      {options.before_dem, options.vertical_unit}, survey.accepted);
+      {options.before_dem, options.vertical_unit});
   return survey;
 }
 

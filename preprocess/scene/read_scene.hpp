@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/map/raster.hpp"
+#include "common/stage/findings.hpp"
 #include "preprocess/options/options.hpp"
 #include "preprocess/release/releases.hpp"
 #include "preprocess/release/sliding_surface.hpp"
@@ -26,7 +27,7 @@ struct SceneRasters {
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed
   std::optional<Survey> survey = {};
   std::optional<SurveyedSlide> slide = {};
-  std::vector<std::pair<std::string, std::string>> accepted = {};  // facts of what the recipe insists on
+  std::vector<Finding> findings = {};
 };
 
 /// The options with working_crs = "utm" replaced by the zone that holds the centre of the first DEM. Throws RecipeError
@@ -42,6 +43,7 @@ struct Surveyed {
   Survey survey;
   std::vector<Raster> surfaces;        // before and after, on the working grid
   std::optional<SurveyedSlide> slide;  // its errors and what was filled; never empty
+  std::vector<Finding> findings = {};
 };
 
 /// Keeps the first survey that was compared, for scenes that differ in what they make of it. For several threads.

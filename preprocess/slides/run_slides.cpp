@@ -67,7 +67,7 @@ SlidesMade make_slides(StageContext& context) {
   const std::vector<fs::path> inputs = inputs_of_slides(context.recipe);
   if (context.check_only) return {inputs, {}, {}};
   SurveyMemory memory;
-  const EnsembleBase base{shared, {}, memory, checksums_of(inputs), {}, {}};
+  const EnsembleBase base{shared, {}, memory, checksums_of(inputs), {}, {}, {}};
   const EnsemblePaths paths{context.out};
   remove_for_good(context.out / "domain.vdb");
   const std::int64_t largest = write_slides(context, plan, base);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 
 namespace talus::preprocess {
 
@@ -34,7 +35,7 @@ Order order_of(const Change& change, const std::vector<Region>& sure, const Rast
   return {volume[1].value() * area, volume[0].value() * area, height(1), height(0)};
 }
 
-std::optional<Implausible> wrong_order(const Order& o, const SurveyFiles& files) {
+std::optional<Fault> wrong_order(const Order& o, const SurveyFiles& files) {
   const bool uphill = o.fall > 0 && o.rise > tells * o.fall && o.rise_height > o.fall_height,
              from_nowhere = o.rise > swells * o.fall;
   if (!uphill && !from_nowhere) return std::nullopt;
@@ -46,15 +47,14 @@ std::optional<Implausible> wrong_order(const Order& o, const SurveyFiles& files)
                    "goes down",
                    o.rise_height - o.fall_height, o.rise_height, o.fall_height)
              : fmt::format("more than {:g} times as much rose as fell, and mass comes from somewhere", swells);
-  return Implausible{
-      "swapped-surveys",
-      {what, why,
-       std::string("Is before_dem the later one? Then swap before_dem and after_dem") +
-           (files.aligned ? "" : ". Is one too high? Then mode = \"apply\" in [preprocess.coregistration]")}};
+  return Fault{what, why,
+               std::string("Is before_dem the later one? Then swap before_dem and after_dem") +
+                   (files.aligned ? "" : ". Is one too high? Then mode = \"apply\" in [preprocess.coregistration]")};
 }
 
-void judge_order(const Order& order, const SurveyFiles& files, Acceptance& acceptance) {
-  if (const auto wrong = wrong_order(order, files)) acceptance.judge(*wrong);
+void judge_order(const Order& order, const SurveyFiles& files) {
+  if (const auto wrong = wrong_order(order, files))
+    refuse_unless_accepted("swapped-surveys", *wrong, {{"rise", order.rise, "m3"}, {"fall", order.fall, "m3"}});
 }
 
 }  // namespace talus::preprocess

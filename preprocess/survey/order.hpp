@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/stage/acceptance.hpp"
+#include "common/error.hpp"
 #include "preprocess/survey/slide_growth.hpp"
 
 namespace talus::preprocess {
@@ -27,11 +27,12 @@ struct SurveyFiles {
   bool aligned = false;  ///< the later one was moved onto the earlier
 };
 
-/// "swapped-surveys" where mass would have gone uphill (what rose lies higher than what fell, and is more than a tenth
-/// of it) or would have come from nowhere (more than twice as much rose as fell); empty where neither is so.
-std::optional<Implausible> wrong_order(const Order& order, const SurveyFiles& files);
+/// The fault "swapped-surveys" where mass would have gone uphill (what rose lies higher than what fell, and is more
+/// than a tenth of it) or would have come from nowhere (more than twice as much rose as fell); empty where neither is
+/// so.
+std::optional<Fault> wrong_order(const Order& order, const SurveyFiles& files);
 
-/// Throws DataError where that is found, unless it is accepted.
-void judge_order(const Order& order, const SurveyFiles& files, Acceptance& acceptance);
+/// Refuses that, unless it is accepted.
+void judge_order(const Order& order, const SurveyFiles& files);
 
 }  // namespace talus::preprocess

@@ -10,6 +10,7 @@
 #include "common/error.hpp"
 #include "common/gis/polygons.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/working_grid.hpp"
@@ -101,12 +102,15 @@ std::string placement_words(const Survey& s) {
 void warn_of_vague_shift(const Survey& s) {
   const double error = largest_shift_error(s);
   if (!(error > well_known * s.grid.cell)) return;
-  log_warning(fmt::format(
-      "{}: its shift on the map is known to {:.2f} m (standard error), {:.2f} cells, only: on a slope of 30 degrees "
-      "heights differ by {:.2f} m for that alone. Give elevation models with more stable ground beyond the slide, with "
-      "finer cells or with less noise, or align them beforehand and set mode = \"off\" in "
-      "[preprocess.coregistration]",
-      s.after.file.string(), error, error / s.grid.cell, error * std::tan(std::numbers::pi / 6)));
+  warn("vague-shift",
+       fmt::format("{}: its shift on the map is known to {:.2f} m (standard error), {:.2f} cells, only: on a slope of "
+                   "30 degrees "
+                   "heights differ by {:.2f} m for that alone. Give elevation models with more stable ground beyond "
+                   "the slide, with "
+                   "finer cells or with less noise, or align them beforehand and set mode = \"off\" in "
+                   "[preprocess.coregistration]",
+                   s.after.file.string(), error, error / s.grid.cell, error * std::tan(std::numbers::pi / 6)),
+       {{"shift_error", error, "m"}});
 }
 
 /// What is compared with itself shows no error; that is no sign that it has none.
@@ -115,20 +119,22 @@ void warn_of_unknown_error(const Survey& s) {
   const double same = s.errors.same_share();
   const std::string mend = "Give what the surveys themselves are good for: sigma_m in [preprocess.difference]";
   if (!s.errors.is_known()) {
-    log_warning(
-        fmt::format("{}: the error of its difference from {} is not known ({}): no error is stated, and changes "
-                    "count from threshold_m on. {}",
-                    s.after.file.string(), s.before.file.string(),
-                    s.fit.known ? fmt::format("they are the same to 1 mm on {:.0f} % of stable ground, so one "
-                                              "was made from the other",
-                                              100 * same)
-                                : "there is too little stable ground to learn it from",
-                    mend));
+    warn("unknown-survey-error",
+         fmt::format("{}: the error of its difference from {} is not known ({}): no error is stated, and changes "
+                     "count from threshold_m on. {}",
+                     s.after.file.string(), s.before.file.string(),
+                     s.fit.known ? fmt::format("they are the same to 1 mm on {:.0f} % of stable ground, so one "
+                                               "was made from the other",
+                                               100 * same)
+                                 : "there is too little stable ground to learn it from",
+                     mend),
+         {{"same_share", same, "1"}});
   } else if (!s.errors.is_given() && same > noticeable_share) {
-    log_warning(
-        fmt::format("{} is the same as {} to 1 mm on {:.0f} % of stable ground: part of it was not surveyed "
-                    "twice, and the error learnt there is too small. {}",
-                    s.after.file.string(), s.before.file.string(), 100 * same, mend));
+    warn("surveys-partly-equal",
+         fmt::format("{} is the same as {} to 1 mm on {:.0f} % of stable ground: part of it was not surveyed "
+                     "twice, and the error learnt there is too small. {}",
+                     s.after.file.string(), s.before.file.string(), 100 * same, mend),
+         {{"same_share", same, "1"}});
   }
 }
 
@@ -145,7 +151,7 @@ void say_alignment(const Survey& s) {
   if (s.applied) {
     log_info(where + "; corrected");
   } else if (noticeable(s)) {
-    log_warning(where + ". Correct it: mode = \"apply\" in [preprocess.coregistration]");
+    warn("surveys-not-aligned", where + ". Correct it: mode = \"apply\" in [preprocess.coregistration]");
   }
   warn_of_vague_shift(s);
 }

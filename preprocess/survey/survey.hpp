@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/map/polygon.hpp"
-#include "common/stage/acceptance.hpp"
 #include "preprocess/survey/coregistration.hpp"
 #include "preprocess/survey/difference.hpp"
 #include "preprocess/survey/slide_growth.hpp"
@@ -27,7 +26,6 @@ struct Survey {
   Detection detection;
   std::vector<MapPolygon> source, deposit;                    // outlines, where the recipe gives them
   std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
-  Acceptance accepted;                                        // what the recipe insists on
 };
 
 /// Finds how the later survey lies on the earlier one, corrects it where the options say so, and learns the error of

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/stage/findings.hpp"
 namespace talus::preprocess {
 
 namespace {
@@ -104,8 +105,7 @@ std::string survey_json(const Survey& s, const Budgets& budgets, const std::opti
     json["outside_slide"]["doubtful"] = slide->outside_is_doubtful;
     json["outside_slide"]["words"] = outside_words(*slide);
   }
-  json["accepted"] = Json::object();
-  for (const auto& [name, words] : accepted_in(s.accepted.facts())) json["accepted"][name] = words;
+  json["findings"] = Json::parse(to_json(findings_so_far()));
   return json.dump(2) + "\n";
 }
 

@@ -15,6 +15,7 @@
 #include "common/gis/resampling.hpp"
 #include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/terrain/scattered.hpp"
 
@@ -102,10 +103,12 @@ bool whole_metres(const Raster& raster) {
 void warn_of_steps(const std::filesystem::path& file, double step, double cell) {
   constexpr double hardly_matters = 0.1;  // [m] below what surveys tell apart
   if (step < hardly_matters) return;
-  log_warning(fmt::format(
-      "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
-      "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
-      file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI));
+  warn("stepped-heights",
+       fmt::format(
+           "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
+           "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
+           file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI),
+       {{"step", step, "m"}});
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/point_layer.hpp"
 #include "common/gis/vertical_unit.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/terrain/point_table.hpp"
 
@@ -92,8 +93,9 @@ ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::p
       points.crs_wkt.empty() && !points.x.empty() && e.west >= -180 && e.east <= 360 && e.south >= -90 && e.north <= 90;
   if (!like_degrees) return points;
   points.crs_wkt = crs_by_name("EPSG:4326");
-  log_warning(fmt::format("{}: x {:g}..{:g}, y {:g}..{:g} and no CRS: taken as longitude and latitude (WGS 84)",
-                          file.string(), e.west, e.east, e.south, e.north));
+  warn("taken-as-degrees",
+       fmt::format("{}: x {:g}..{:g}, y {:g}..{:g} and no CRS: taken as longitude and latitude (WGS 84)", file.string(),
+                   e.west, e.east, e.south, e.north));
   return points;
 }
 

@@ -12,6 +12,7 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/ground_scale.hpp"
 #include "common/map/slope.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::preprocess {
@@ -56,7 +57,7 @@ std::string unit_advice(VerticalUnit unit) {
 
 }  // namespace
 
-void judge_lengths(const MapGrid& grid, const std::string& working_crs, Acceptance& acceptance) {
+void judge_lengths(const MapGrid& grid, const std::string& working_crs) {
   const auto scale = grid_scale(grid);
   if (!scale || scale->worst.falsity() <= told) return;
   const auto& [middle, worst] = *scale;
@@ -69,32 +70,35 @@ void judge_lengths(const MapGrid& grid, const std::string& working_crs, Acceptan
                            : working_crs.empty()
                                ? "set working_crs = \"utm\" in [preprocess], or name a CRS that keeps lengths there"
                                : "name another working_crs in [preprocess], \"utm\" or one that keeps lengths there";
+  const std::vector<FindingNumber> numbers{{"length_error", worst.falsity(), "1"}, {"area_factor", middle.area, "1"}};
   if (worst.falsity() > refused) {
-    acceptance.judge({"false-lengths",
-                      {words, fmt::format("lengths are off by {:.2g} %; 1 % is allowed", 100 * worst.falsity()),
-                       capitalised(mend)}});
+    refuse_unless_accepted(
+        "false-lengths",
+        {words, fmt::format("lengths are off by {:.2g} %; 1 % is allowed", 100 * worst.falsity()), capitalised(mend)},
+        numbers);
   } else {
-    log_warning(fmt::format("{}. To be free of it, {}", words, mend));
+    warn("slightly-false-lengths", fmt::format("{}. To be free of it, {}", words, mend), numbers);
   }
 }
 
-void judge_heights(const Raster& surface, const HeightSource& source, Acceptance& acceptance) {
+void judge_heights(const Raster& surface, const HeightSource& source) {
   const double steep = steep_tenth(surface);
   double highest = -INFINITY;
   for (const double z : surface.values) {
     if (z > highest) highest = z;  // false for nodata
   }
   if (steep <= steep_deg && highest <= highest_mountain) return;
-  acceptance.judge(
-      {"steep-ground",
-       {fmt::format("{}: a tenth of the ground is steeper than {:.0f} degrees, the highest lies at {:.0f} m",
-                    source.file.string(), steep, highest),
-        fmt::format("terrain has {:.0f} degrees at most there, and no mountain is higher than {:.0f} m: are heights in "
-                    "feet, which the file does not say, or places in another unit than heights? As feet it were {:.0f} "
-                    "degrees",
-                    steep_deg, highest_mountain,
-                    std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
-        unit_advice(source.unit)}});
+  refuse_unless_accepted(
+      "steep-ground",
+      {fmt::format("{}: a tenth of the ground is steeper than {:.0f} degrees, the highest lies at {:.0f} m",
+                   source.file.string(), steep, highest),
+       fmt::format("terrain has {:.0f} degrees at most there, and no mountain is higher than {:.0f} m: are heights in "
+                   "feet, which the file does not say, or places in another unit than heights? As feet it were {:.0f} "
+                   "degrees",
+                   steep_deg, highest_mountain,
+                   std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
+       unit_advice(source.unit)},
+      {{"slope_of_steepest_tenth", steep, "degree"}, {"highest", highest, "m"}});
 }
 
 }  // namespace talus::preprocess

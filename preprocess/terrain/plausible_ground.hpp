@@ -6,15 +6,14 @@
 #include <filesystem>
 
 #include "common/map/raster.hpp"
-#include "common/stage/acceptance.hpp"
 #include "preprocess/options/elevation.hpp"
 
 namespace talus::preprocess {
 
 /// Measures the scale of the grid's CRS in its middle and its corners. Where lengths are off by more than a hundredth
-/// ("false-lengths"), throws DataError unless accepted; beyond a thousandth, warns. Volumes are off by twice as much.
+/// ("false-lengths"), refuses it unless accepted; beyond a thousandth, warns. Volumes are off by twice as much.
 /// `working_crs` is the recipe's, so that nothing is advised that is done.
-void judge_lengths(const MapGrid& grid, const std::string& working_crs, Acceptance& acceptance);
+void judge_lengths(const MapGrid& grid, const std::string& working_crs);
 
 /// Where heights come from, and what the recipe says they are in.
 struct HeightSource {
@@ -22,9 +21,9 @@ struct HeightSource {
   VerticalUnit unit = VerticalUnit::declared;
 };
 
-/// Throws DataError unless accepted ("steep-ground") where a tenth of a surface [m] is steeper than 50 degrees or some
+/// Refuses, unless accepted ("steep-ground"), ground where a tenth of a surface [m] is steeper than 50 degrees or some
 /// of it is higher than 9,000 m, as where feet are taken for metres. On the terrain at hand (notes/plausibility.md) a
 /// tenth is steeper than 26 to 43 degrees, and read as feet 58 to 72.
-void judge_heights(const Raster& surface, const HeightSource& source, Acceptance& acceptance);
+void judge_heights(const Raster& surface, const HeightSource& source);
 
 }  // namespace talus::preprocess

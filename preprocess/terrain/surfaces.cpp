@@ -13,6 +13,7 @@
 #include "common/gis/grid_limits.hpp"
 #include "common/map/crop.hpp"
 #include "common/map/sum.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::preprocess {
@@ -69,7 +70,9 @@ void leave_edges_outside(std::vector<Raster>& rasters) {
     for (Raster& raster : rasters) raster.values[i] = std::numeric_limits<double>::quiet_NaN();
   }
   if (count > 0)
-    log_warning(fmt::format("{} cells without elevation reach the edge of the grid and lie outside the domain", count));
+    warn("cells-outside-domain",
+         fmt::format("{} cells without elevation reach the edge of the grid and lie outside the domain", count),
+         {{"cells", static_cast<double>(count), "1"}});
 }
 
 /// `largest_void` is the area of the largest one that was left unfilled [m2].
@@ -105,8 +108,10 @@ void look_at_spikes(const Elevation& dem, Raster& raster, const VoidOptions& opt
   const std::vector<Outlier> outliers = spikes_and_pits(raster);
   if (outliers.empty()) return;
   const bool remove = options.spikes == Spikes::remove;
-  log_warning(fmt::format("{}: {}{}", dem.file.string(), summary(outliers, raster.grid),
-                          remove ? "; removed" : "; remove them with spikes = \"remove\" in [preprocess.voids]"));
+  warn("spikes",
+       fmt::format("{}: {}{}", dem.file.string(), summary(outliers, raster.grid),
+                   remove ? "; removed" : "; remove them with spikes = \"remove\" in [preprocess.voids]"),
+       {{"cells", static_cast<double>(outliers.size()), "1"}});
   if (!remove) return;
   for (const Outlier& outlier : outliers) raster.values[outlier.cell] = std::numeric_limits<double>::quiet_NaN();
 }

@@ -55,9 +55,11 @@ class Run:
         return self._grid["crs_wkt"]
 
     @property
-    def remarks(self):
-        """What the stages warned of and advised: {"warning.coarse_grid": words, ...}."""
-        return {k: v for k, v in self.provenance.items() if k.startswith(("warning.", "advice."))}
+    def findings(self):
+        """Advice, warnings and overridden refusals of the stages: dictionaries with `severity` ("advice", "warning" or
+        "refusal"), `name`, `message`, `numbers` ({name: {"value", "unit"}}), `stage` and `accepted_by`."""
+        with h5py.File(self.file) as file:
+            return json.loads(file["findings"][:].tobytes())
 
     def history(self):
         """The history as a Dataset on `time` [s]; a variable for each column, attributes `units`, also of a gauge or

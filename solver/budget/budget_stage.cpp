@@ -14,7 +14,7 @@
 #include "common/domain/domain_facts.hpp"
 #include "common/run/run_facts.hpp"
 #include "common/run/sealed_file.hpp"
-#include "common/stage/console.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/input_file.hpp"
 #include "common/stage/interrupt.hpp"
 #include "solver/budget/own_changes.hpp"
@@ -23,7 +23,6 @@
 #include "solver/ensemble/member_cost.hpp"
 #include "solver/plan/named_places.hpp"
 #include "solver/plan/plan.hpp"
-#include "solver/plan/plausible.hpp"
 #include "solver/plan/trial.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
@@ -68,8 +67,7 @@ void find_domain(Variation& one, const BudgetPaths& paths, const Domain& base) {
 struct BudgetScene {
   std::shared_ptr<const Domain> domain;  ///< of the run itself
   BudgetBase base;                       ///< likewise
-  Facts insisted;
-  std::vector<Variation> variations;  ///< those without a domain left out
+  std::vector<Variation> variations;     ///< those without a domain left out
 };
 
 BudgetScene read_budget_scene(const StageContext& context, const BudgetOptions& options) {
@@ -77,8 +75,8 @@ BudgetScene read_budget_scene(const StageContext& context, const BudgetOptions& 
   scene.base.asked = options_of(context.recipe, context.out);
   const fs::path file = inputs_of(scene.base.asked, context.out).front();
   scene.domain = std::make_shared<const Domain>(read_domain(file));
-  const QuietThread quiet;  // the run itself has said all of it
-  scene.insisted = judge_inputs(context, scene.base.asked, file, *scene.domain);
+  const Findings found("solve", {}, Findings::Log::kept_back);  // the run itself has said all of it
+  judge_inputs(context, scene.base.asked, file, *scene.domain);
   scene.base.places = scene.domain->places;
   scene.base.asked = with_places(std::move(scene.base.asked), scene.base.places);
   Plan base = begin_plan(scene.domain, scene.base.asked);
@@ -112,7 +110,7 @@ Budget fresh_budget(const StageContext& context, const BudgetScene& scene, const
                 .runs = {},
                 .provenance = scene.domain->provenance};
   for (const Variation& one : scene.variations) budget.runs.push_back(one.run);
-  const Facts own = made_by(context, scene.base.settled, scene.insisted);
+  const Facts own = made_by(context, scene.base.settled);
   budget.provenance.insert(budget.provenance.end(), own.begin(), own.end());
   budget.provenance.emplace_back("version.solve", version());
   return budget;
@@ -160,7 +158,8 @@ InFlight budget_flight(const BudgetScene& scene, const BudgetOptions& options, c
 void judge_budget(const Budget& budget) {
   for (const BudgetRun& run : budget.runs) {
     if (run.state == BudgetState::left_out) log_info(fmt::format("budget: {} is left out: {}", run.name, run.reason));
-    if (run.state == BudgetState::failed) log_warning(fmt::format("budget: {} failed: {}", run.name, run.reason));
+    if (run.state == BudgetState::failed)
+      warn("budget-run-failed", fmt::format("budget: {} failed: {}", run.name, run.reason));
   }
   if (budget.count(BudgetState::done) > 0 || budget.runs.empty()) return;
   throw NumericalError({"no run of the error budget came to its end",
@@ -170,9 +169,11 @@ void judge_budget(const Budget& budget) {
 
 /// This function warns of what the recipe accepts and neither the run nor its budget met.
 void say_unmet(const StageContext& context, const BudgetScene& scene, const Budget& budget) {
-  Facts met = run_facts(RunPaths(context.out).run);
-  for (const BudgetRun& run : budget.runs) met.insert(met.end(), run.accepted.begin(), run.accepted.end());
-  warn_of_unmet(scene.base.asked.accept, met);
+  std::vector<Finding> met = read_run(RunPaths(context.out).run).summary.findings;
+  for (const BudgetRun& run : budget.runs)
+    for (const auto& [name, words] : run.accepted)
+      met.push_back({Severity::refusal, name.substr(std::string("accepted.").size()), words});
+  warn_of_unused("solve", scene.base.asked.accept, met);
 }
 
 /// This function says the price: the runs, what each takes, what is left out and why.

@@ -9,8 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "common/stage/acceptance.hpp"
-#include "common/stage/console.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/ensemble/member_run.hpp"
 #include "solver/ensemble/side_by_side.hpp"
@@ -34,7 +33,7 @@ class Noting {
 
   void make(std::size_t place, const AnyDevice& device) {
     BudgetRun run = budget_.runs[place];
-    const QuietThread quiet;
+    const Findings found("solve", {}, Findings::Log::kept_back);
     run.reason = failure_of([&] {
       const auto domain = domain_of(variations_[place], plan_.domain, plan_.paths);
       if (auto made = run_member(plan(domain, variations_[place].options, Settle::done), device))
@@ -42,17 +41,21 @@ class Noting {
     });
     if (!run.reason.empty()) run.state = BudgetState::failed;
     if (run.state == BudgetState::waiting) return;
-    run.warnings = without_accepted(quiet.warnings());
+    for (const Finding& f : found.list())
+      if (f.severity == Severity::refusal)
+        run.accepted.emplace_back("accepted." + f.name, f.message);
+      else
+        run.warnings.push_back(f.message);
     put(place, std::move(run));
   }
 
  private:
   static void take(BudgetRun& run, MemberRun&& made) {
     if (made.result.volume_outflow > 0)
-      log_warning(fmt::format("{:.4g} m3 left the domain, and are missing from its maps. Take a larger domain",
-                              made.result.volume_outflow));
+      warn("volume-left-domain",
+           fmt::format("{:.4g} m3 left the domain, and are missing from its maps. Take a larger domain",
+                       made.result.volume_outflow));
     run.state = BudgetState::done;
-    run.accepted = std::move(made.accepted);
     run.result = made.result;
     run.deposit = {made.maps.grid, std::move(made.maps.deposit_thickness)};
     run.peak_thickness = {made.maps.grid, std::move(made.maps.peak_thickness)};
@@ -90,8 +93,7 @@ bool run_variations(const std::vector<Variation>& variations, Budget& budget, co
                [&](std::size_t place, const AnyDevice& device) { noting.make(waiting[place], device); });
   for (const std::size_t place : waiting) {
     const BudgetRun& run = budget.runs[place];
-    for (const auto& [name, words] : accepted_in(run.accepted))
-      log_warning(fmt::format("{}: {}", run.name, accepted_warning(name, words)));
+    for (const auto& [name, words] : run.accepted) log_warning(fmt::format("{}: {}: {}", run.name, name, words));
     for (const std::string& words : run.warnings) log_warning(fmt::format("{}: {}", run.name, words));
   }
   return budget.count(BudgetState::waiting) == 0;

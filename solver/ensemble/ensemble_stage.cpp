@@ -13,15 +13,13 @@
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
 #include "common/ensemble/slide_options.hpp"
-#include "common/stage/acceptance.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/machine.hpp"
 #include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/keep_runs.hpp"
 #include "solver/ensemble/member_cost.hpp"
 #include "solver/ensemble/run_members.hpp"
-#include "solver/plan/plausible.hpp"
-#include "solver/plan/warnings.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/scene/make_solver.hpp"
 
@@ -93,7 +91,7 @@ Ensemble read_ensemble(const StageContext& context, const EnsembleFlags& flags, 
 }
 
 EnsembleCounts fresh_counts(const StageContext& context, const Ensemble& e, const Domain& domain,
-                            const SolveOptions& base, const Facts& facts) {
+                            const SolveOptions& base) {
   EnsembleScene scene{.scene = context.recipe.scene_name(),
                       .title = context.recipe.title(),
                       .grid = domain.grid,
@@ -113,9 +111,10 @@ EnsembleCounts fresh_counts(const StageContext& context, const Ensemble& e, cons
   EnsembleCounts counts = empty_counts(std::move(scene), e.table.count, e.part, e.options.thresholds);
   counts.fingerprint = e.fingerprint;
   counts.provenance = domain.provenance;
-  const Facts own = made_by(context, base, facts);
+  const Facts own = made_by(context, base);
   counts.provenance.insert(counts.provenance.end(), own.begin(), own.end());
   counts.provenance.emplace_back("version.solve", version());
+  counts.findings = findings_so_far();
   return counts;
 }
 
@@ -146,23 +145,28 @@ void take_up(const Ensemble& e, const EnsembleFlags& flags, EnsembleCounts& coun
   counts = std::move(*found);
 }
 
-/// This function says what was insisted on and what was warned of, each warning once with the members that it is of.
-void say_warnings(const EnsembleCounts& counts, const MemberTable& table, const Domain& domain) {
-  for (const auto& [name, words] : accepted_in(counts.provenance))
-    if (fact(domain.provenance, accepted_fact(name)).empty()) log_warning(accepted_warning(name, words));
-  std::vector<std::pair<std::string, std::vector<std::int64_t>>> said;
-  for (const MemberWords& warning : counts.warnings) {
-    auto same = std::find_if(said.begin(), said.end(), [&](const auto& one) { return one.first == warning.words; });
-    if (same == said.end()) same = said.insert(said.end(), {warning.words, {}});
-    same->second.push_back(warning.member);
+/// This function says what members found, each once with the members that it is of: refusals that the recipe overrides
+/// by their names, warnings by their words.
+void say_findings(const EnsembleCounts& counts, const MemberTable& table) {
+  std::vector<std::pair<Finding, std::vector<std::int64_t>>> said;
+  for (const Finding& finding : counts.findings) {
+    if (finding.member == Finding::no_member) continue;
+    const bool by_name = finding.severity == Severity::refusal;
+    auto same = std::ranges::find_if(said, [&](const auto& one) {
+      return one.first.name == finding.name && (by_name || one.first.message == finding.message);
+    });
+    if (same == said.end()) same = said.insert(by_name ? said.begin() : said.end(), {finding, {}});
+    same->second.push_back(finding.member);
   }
   for (std::size_t n = 0; n < said.size() && n < most_said; ++n) {
-    const auto& [words, members] = said[n];
-    log_warning(members.size() == 1
-                    ? fmt::format("{}: {}", table.name_of(members.front()), words)
-                    : fmt::format("{} and {} others: {}", table.name_of(members.front()), members.size() - 1, words));
+    auto& [finding, members] = said[n];
+    finding.message =
+        fmt::format("{}{}: {}", table.name_of(members.front()),
+                    members.size() == 1 ? "" : fmt::format(" and {} others", members.size() - 1), finding.message);
+    add_finding(finding);
   }
-  if (said.size() > most_said) log_warning(fmt::format("{} more warnings of members", said.size() - most_said));
+  if (said.size() > most_said)
+    warn("more-findings", fmt::format("{} more warnings of members", said.size() - most_said));
 }
 
 /// This function saves what is finished, and throws Interrupted.
@@ -176,10 +180,11 @@ void say_warnings(const EnsembleCounts& counts, const MemberTable& table, const 
 /// This function says which members failed; it throws NumericalError where they are too many.
 void judge_failures(const EnsembleCounts& counts, double allowed_share, const MemberTable& table) {
   for (std::size_t n = 0; n < counts.failures.size() && n < most_said; ++n)
-    log_warning(fmt::format("{} failed: {}", table.name_of(counts.failures[n].member), counts.failures[n].words));
+    warn("member-failed",
+         fmt::format("{} failed: {}", table.name_of(counts.failures[n].member), counts.failures[n].words));
   const auto failed = static_cast<double>(counts.failures.size()), all = static_cast<double>(counts.part.count());
   if (failed == 0) return;
-  log_warning(fmt::format("{} of {} members failed; the counts are without them", failed, all));
+  warn("members-failed", fmt::format("{} of {} members failed; the counts are without them", failed, all));
   if (failed > allowed_share * all)
     throw NumericalError({fmt::format("{:.0f} of {:.0f} members failed, the first is {}", failed, all,
                                       table.name_of(counts.failures.front().member)),
@@ -192,12 +197,12 @@ void judge_failures(const EnsembleCounts& counts, double allowed_share, const Me
 void say_edges(const EnsembleCounts& counts, const MemberTable& table) {
   const std::vector<std::int64_t> members = counts.at_edge();
   if (members.empty()) return;
-  log_warning(
-      fmt::format("{} of {} members came to the edge of their domain ({}): what lies beyond is missing from "
-                  "maps and numbers. {}",
-                  members.size(), counts.part.count(), table.names_of(members, most_said),
-                  table.slides ? "Give a larger margin_m in [slides], or a smaller reach_angle_deg"
-                               : "Take a larger part of the elevation model"));
+  warn("members-at-edge",
+       fmt::format("{} of {} members came to the edge of their domain ({}): what lies beyond is missing from "
+                   "maps and numbers. {}",
+                   members.size(), counts.part.count(), table.names_of(members, most_said),
+                   table.slides ? "Give a larger margin_m in [slides], or a smaller reach_angle_deg"
+                                : "Take a larger part of the elevation model"));
 }
 
 /// This function runs the members of a part that wait, on these devices, and saves their counts now and then; see
@@ -243,7 +248,8 @@ Dependencies depends_of_ensemble(const StageContext& context, const EnsembleFlag
 }
 
 Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std::shared_ptr<const Domain>& base_domain,
-                   const SolveOptions& base, const Facts& facts) {
+                   const SolveOptions& base) {
+  const Findings found("solve");
   const Domain& domain = *base_domain;
   const auto begun = std::chrono::steady_clock::now();
   const Ensemble e = read_ensemble(context, flags, domain, base);
@@ -255,7 +261,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
     context.results.push_back(e.counts);
     return {{"wall_time_s", seconds()}, {"members", std::to_string(e.part.count())}};
   }
-  say_warnings_of_domain(domain);
+  add_findings(domain.findings);
   const Members members(context.recipe, e.table, e.paths, base_domain, base);
   members.check();
   const std::vector<AnyDevice> each = one_of_each(flags.on);
@@ -269,18 +275,18 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
     return {};
   }
   if (context.check_only) return {};
-  EnsembleCounts counts = fresh_counts(context, e, domain, base, facts);
+  EnsembleCounts counts = fresh_counts(context, e, domain, base);
   take_up(e, flags, counts);
   counts.keeps_deposits = e.options.keep_deposits;
   const auto unfinished = e.paths.unfinished(e.part);
   const OwnEnd saving("finished members are saved");
   keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);
   const bool is_whole = count_members(e, members, devices_for(flight.count, flags.on), counts);
-  say_warnings(counts, e.table, domain);
+  say_findings(counts, e.table);
   if (!is_whole) stop(counts, unfinished);
   judge_failures(counts, e.options.failed_share, e.table);
   say_edges(counts, e.table);
-  if (e.part.count() == counts.members) warn_of_unmet(base.accept, counts.provenance);
+  if (e.part.count() == counts.members) warn_of_unused("solve", base.accept, counts.findings);
   write_counts(e.counts, counts);
   remove_for_good(unfinished);
   context.results.push_back(e.counts);

@@ -38,10 +38,9 @@ int members_at_a_time(const std::string& words);
 Dependencies depends_of_ensemble(const StageContext& context, const EnsembleFlags& flags);
 
 /// This function runs the members and writes their counts. `domain` is the base domain, `base` the options of the
-/// recipe itself, `facts` what is insisted on. It adds to the results and returns the facts for the used recipe. It
-/// throws NumericalError where too many members fail, Interrupted with what is finished left behind, RecipeError and
-/// DataError.
+/// recipe itself. It adds to the results and returns the facts for the used recipe. It throws NumericalError where too
+/// many members fail, Interrupted with what is finished left behind, RecipeError and DataError.
 Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std::shared_ptr<const Domain>& domain,
-                   const SolveOptions& base, const Facts& facts);
+                   const SolveOptions& base);
 
 }  // namespace talus::solver

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/run/run_facts.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/ensemble/member_run.hpp"
 #include "solver/run/run_stage.hpp"
 #include "solver/run/simulation.hpp"
@@ -41,7 +42,6 @@ void keep_runs(StageContext& context, const Members& members, const EnsembleOpti
     std::string failure = failure_of([&] {
       const auto own = members.plan(k);
       facts.insert(facts.begin(), own->domain->provenance.begin(), own->domain->provenance.end());
-      facts.insert(facts.end(), own->accepted.begin(), own->accepted.end());
       simulation.emplace(own, device, files, mark);
     });
     if (failure.empty()) {
@@ -55,7 +55,7 @@ void keep_runs(StageContext& context, const Members& members, const EnsembleOpti
       }
     }
     // It is counted as failed when its turn comes.
-    if (!failure.empty()) log_warning(fmt::format("member {} leaves no run: {}", k, failure));
+    if (!failure.empty()) warn("member-not-kept", fmt::format("member {} leaves no run: {}", k, failure));
   }
 }
 

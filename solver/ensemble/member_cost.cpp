@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "common/stage/console.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/parallel/alone.hpp"
 #include "solver/plan/trial.hpp"
 
@@ -16,7 +16,7 @@ constexpr double trial_seconds = 0.5;
 }  // namespace
 
 MemberCost cost_of_member(const Plan& base, const AnyDevice& device, bool timed) {
-  const QuietThread quiet;
+  const Findings found("solve", {}, Findings::Log::kept_back);
   const Alone alone;
   const Trial trial = try_steps(base, device, timed ? trial_seconds : 0);
   const StepCount count = count_steps(base, trial.step);

@@ -8,8 +8,8 @@
 
 #include "common/map/statistics.hpp"
 #include "common/run/mobility.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/run/recorders/stretch.hpp"
 #include "solver/run/run_loop.hpp"
 #include "solver/run/sanity.hpp"
 
@@ -83,9 +83,11 @@ MemberResult measured(const RunMaps& maps, double threshold) {
 }
 
 std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, const AnyDevice& device) {
+  const Findings found("solve", plan->options.accept);
+  for (const Finding& finding : plan->findings)
+    if (finding.severity == Severity::refusal) add_finding(finding);
   RunTimer timer;
   RunLoop loop(plan, device, HistoryUse::judged);
-  Facts accepted = plan->accepted;
   loop.start();
   MemberKeeper keeper;
   try {
@@ -96,11 +98,9 @@ std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, con
   const SolverState state = loop.stepper().solver().state();
   const RunEnd end = loop.end(state);
   const double outflow = loop.memory().outflow_volume;
-  for (const std::string& line : loop.history().warnings()) log_warning(line);
-  for (auto& fact : torn_body_accepted(loop.options(), loop.history().rows())) accepted.push_back(std::move(fact));
-  for (const std::string& fault : insane(sanity_of(end, loop.history().rows(), outflow))) log_warning(fault);
+  loop.history().conclude();
+  say_sanity(sanity_of(end, loop.history().rows(), outflow));
   MemberRun run;
-  run.accepted = std::move(accepted);
   run.maps = final_maps(end, loop.stepper().solver().thickness());
   run.result = measured(run.maps, plan->options.map_threshold);
   const SlideVolumes volumes = slide_volumes(end, outflow);

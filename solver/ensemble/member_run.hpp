@@ -9,7 +9,6 @@
 
 #include "common/ensemble/counts.hpp"
 #include "common/error.hpp"
-#include "common/stage/identity.hpp"
 #include "solver/parallel/any_device.hpp"
 #include "solver/plan/plan.hpp"
 
@@ -19,7 +18,6 @@ namespace talus::solver {
 struct MemberRun {
   RunMaps maps;
   MemberResult result;
-  Facts accepted = {};  ///< what the recipe insists on and this run met
 };
 
 /// This function does body() for one of many runs and returns what that run failed by, in words: the computation, its
@@ -38,9 +36,9 @@ std::string failure_of(const Body& body) {
   return {};
 }
 
-/// This function runs a member to its end. Its maps have the bits of run.h5 of the same plan run by
-/// itself, on the CPU and where the options ask for deterministic sums. None: the process was interrupted. It throws
-/// NumericalError, and DataError and RecipeError where the scene is refused.
+/// This function runs a member to its end, and adds what it found to the thread's findings. Its maps have the bits of
+/// run.h5 of the same plan run by itself, on the CPU and where the options ask for deterministic sums. None: the
+/// process was interrupted. It throws NumericalError, and DataError and RecipeError where the scene is refused.
 std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, const AnyDevice& device);
 
 /// The numbers of a member by its maps: run-out, areas, largest values. `threshold`: thickness from which a cell counts

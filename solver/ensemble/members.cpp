@@ -63,8 +63,7 @@ Plan settled_base(std::shared_ptr<const Domain> domain, const SolveOptions& opti
   Plan base = begin_plan(std::move(domain), options);
   settle(base);
   for (const std::string& reason : base.reasons) log_info(reason);
-  const std::string unkept = unkept_accuracy(*base.domain, base.asked, base.bound.line);
-  if (!unkept.empty()) log_warning(unkept);
+  warn_of_unkept_accuracy(*base.domain, base.asked, base.bound.line);
   return base;
 }
 

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "common/stage/acceptance.hpp"
-#include "common/stage/console.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/ensemble/member_run.hpp"
 #include "solver/ensemble/side_by_side.hpp"
@@ -30,7 +28,7 @@ double seconds_since(WallClock::time_point begun) {
 struct Outcome {
   std::optional<MemberRun> run;
   std::string failure;
-  std::vector<std::string> warnings;
+  std::vector<Finding> findings;
 };
 
 constexpr const char* at_the_edge =
@@ -38,14 +36,14 @@ constexpr const char* at_the_edge =
     "margin_m, or a smaller reach_angle_deg";
 
 Outcome outcome_of(const Members& members, std::int64_t member, const AnyDevice& device, bool edge_fails) {
-  const QuietThread quiet;
+  const Findings found("solve", {}, Findings::Log::kept_back);
   Outcome outcome;
   outcome.failure = failure_of([&] { outcome.run = run_member(members.plan(member), device); });
   if (edge_fails && outcome.run && is_at_edge(outcome.run->result)) {
     outcome.run.reset();
     outcome.failure = at_the_edge;
   }
-  outcome.warnings = without_accepted(quiet.warnings());
+  outcome.findings = found.list();
   return outcome;
 }
 
@@ -66,14 +64,13 @@ class Tallying {
   void count(std::int64_t member, Outcome&& outcome) {
     const std::lock_guard<std::mutex> one(mutex_);
     if (outcome.run) {
-      keep_accepted(member, outcome.run->accepted);
       counts_.add(member, outcome.run->maps, outcome.run->result);
     } else if (!outcome.failure.empty()) {
       counts_.fail(member, std::move(outcome.failure));
     } else {
       return;  // given up
     }
-    for (std::string& words : outcome.warnings) add_in_order(counts_.warnings, {member, std::move(words)});
+    for (Finding& finding : outcome.findings) counts_.add_finding(member, std::move(finding));
     ++done_;
     say();
     save();
@@ -83,20 +80,6 @@ class Tallying {
   bool is_whole() const { return done_ == members_; }
 
  private:
-  /// What members were insisted on stands in the counts, in the words of the first of them, whichever ended first.
-  void keep_accepted(std::int64_t member, const Facts& accepted) {
-    Facts& known = counts_.provenance;
-    for (const auto& [name, words] : accepted) {
-      const auto [first, is_new] = accepted_by_.try_emplace(name, member);
-      if (!is_new && first->second < member) continue;
-      first->second = member;
-      auto at =
-          std::find_if(known.begin(), known.end(), [&, &key = name](const auto& one) { return one.first == key; });
-      if (at == known.end()) at = known.insert(known.end(), {name, ""});
-      at->second = fmt::format("in member {}, and maybe in others: {}", member, words);
-    }
-  }
-
   void say() {
     if (!progress_.due()) return;
     const double wall = seconds_since(begun_),
@@ -114,7 +97,6 @@ class Tallying {
   }
 
   EnsembleCounts& counts_;
-  std::map<std::string, std::int64_t> accepted_by_;  ///< the first member of those that ended
   std::size_t members_, done_ = 0;
   const MembersPlan& plan_;
   std::mutex mutex_;

@@ -12,7 +12,7 @@ namespace talus::solver {
 
 struct SolveOptions;
 
-/// The names of what is implausible in a scene (solver/plan/plausible.hpp), as `accept` takes them.
+/// The names of what is implausible in a scene (solver/plan/checks.hpp), as `accept` takes them.
 /// "torn-body" is met, if at all, as a run goes on.
 inline constexpr const char* torn_body = "torn-body";
 inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves",     "fast-waves",

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/plan/advice.hpp"
-
+// What a recipe could do better.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "common/map/usual_reach.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/boundary/base_friction.hpp"
+#include "solver/plan/checks.hpp"
 #include "solver/plan/plan.hpp"
 #include "solver/plan/stiffness.hpp"
 
@@ -30,27 +31,30 @@ double released_volume(const Plan& plan) {
   return volume;
 }
 
-void advise_on_points(const Domain& domain, Advice& lines) {
+void advise_on_points(const Domain& domain) {
   double volume = 0;
   for (const double v : domain.points.volume) volume += v;
   const double cell = domain.grid.cell * domain.grid.cell * domain.layer_height;
   const double in_a_cell = volume > 0 ? static_cast<double>(domain.points.size()) * cell / volume : fewest_points;
   if (in_a_cell >= fewest_points) return;
-  lines.emplace_back("points", fmt::format("a cell holds {:.2g} material points: a flow that spreads gets gaps. Put "
-                                           "points_per_cell = [2, 2, 2] into [preprocess.grid]",
-                                           in_a_cell));
+  advise("points",
+         fmt::format("a cell holds {:.2g} material points: a flow that spreads gets gaps. Put "
+                     "points_per_cell = [2, 2, 2] into [preprocess.grid]",
+                     in_a_cell),
+         {{"points_in_a_cell", in_a_cell, "1"}});
 }
 
-void advise_on_stiffness(const Plan& plan, Advice& lines) {
+void advise_on_stiffness(const Plan& plan) {
   const SolveOptions& o = plan.options;
   if (!abilities_of(o.integrator).obey_cfl || !o.material.stiffness_is_free()) return;
   const StiffnessDemand demand = lowest_stiffness(o, plan.bound);
   const double shorter = demand.modulus > 0 ? std::sqrt(o.material.youngs_modulus / demand.modulus) : 0;
   if (!(shorter >= longer_steps) || !(plan.bound.speed > 0)) return;
-  lines.emplace_back(
-      "stiffness", fmt::format("youngs_modulus_Pa = {:.3g} makes steps up to {:.2g} times shorter than the flow needs: "
-                               "{:.2g} Pa would do. Put stiffness = \"auto\" into [solve.material]",
-                               o.material.youngs_modulus, shorter, demand.modulus));
+  advise("stiffness",
+         fmt::format("youngs_modulus_Pa = {:.3g} makes steps up to {:.2g} times shorter than the flow needs: "
+                     "{:.2g} Pa would do. Put stiffness = \"auto\" into [solve.material]",
+                     o.material.youngs_modulus, shorter, demand.modulus),
+         {{"youngs_modulus", demand.modulus, "Pa"}, {"steps_longer", shorter, "1"}});
 }
 
 /// Between which the bed's friction over normal stress lies, however fast a flow slips that stays below the energy line
@@ -94,7 +98,7 @@ FrictionRange friction_range(const Plan& plan) {
   return range;
 }
 
-void advise_on_friction(const Plan& plan, Advice& lines) {
+void advise_on_friction(const Plan& plan) {
   const SolveOptions& o = plan.options;
   const double volume = released_volume(plan);
   const ReachBounds usual = usual_reach(volume);
@@ -105,20 +109,20 @@ void advise_on_friction(const Plan& plan, Advice& lines) {
   for (const ReachRegression& one : reach_regressions())
     if (volume >= one.from_volume)
       sources += fmt::format("{}{:.2f} ({}, {})", sources.empty() ? "" : ", ", one.tangent(volume), one.source, one.of);
-  const bool coulomb = o.base.law == FrictionLaw::coulomb;
-  lines.emplace_back(
+  const std::string key = o.base.friction_key();
+  advise(
       "friction",
       fmt::format("the bed's friction of {}{} is far from the height over length of fall that is usual for {:.3g} m3: "
                   "{}; beyond half and twice of it there is hardly any. Look at [solve.base] {}again: {:.0f} to {:.0f} "
                   "deg",
-                  range.words(), coulomb ? "" : fmt::format(" (law {})", o.base.law_name()), volume, sources,
-                  coulomb ? "friction_angle_deg " : "", std::atan(usual.low) * to_degrees,
-                  std::atan(usual.high) * to_degrees));
+                  range.words(), key.empty() ? fmt::format(" (law {})", o.base.law_name()) : "", volume, sources,
+                  key.empty() ? "" : key + " ", std::atan(usual.low) * to_degrees, std::atan(usual.high) * to_degrees),
+      {{"least_friction", range.least, "1"}, {"most_friction", range.most, "1"}, {"volume", volume, "m3"}});
 }
 
 /// What is as fast as the energy line allows takes this long to be braked by its bed on level ground, and has been
 /// sped up before.
-void advise_on_end(const Plan& plan, Advice& lines) {
+void advise_on_end(const Plan& plan) {
   const SolveOptions& o = plan.options;
   if (!abilities_of(o.integrator).carry_inertia || !o.loads.empty() || !o.walls.empty()) return;
   const double friction = plan.bound.line.friction, speed = plan.bound.fall;
@@ -126,37 +130,36 @@ void advise_on_end(const Plan& plan, Advice& lines) {
   if (!(friction > 0.02) || !(g > 0)) return;
   const double braking = speed / (g * friction);
   if (o.end_time >= braking) return;
-  lines.emplace_back("end-time",
-                     fmt::format("end_time_s = {:.3g} is likely before rest: the energy line allows {:.3g} m/s, and "
-                                 "the bed alone takes {:.3g} s to brake that. Put end_time_s = {:.2g} and "
-                                 "stop_kinetic_fraction = 0.001 into [solve]: the run stops by itself at rest",
-                                 o.end_time, speed, braking, 3 * braking));
+  advise("end-time",
+         fmt::format("end_time_s = {:.3g} is likely before rest: the energy line allows {:.3g} m/s, and "
+                     "the bed alone takes {:.3g} s to brake that. Put end_time_s = {:.2g} and "
+                     "stop_kinetic_fraction = 0.001 into [solve]: the run stops by itself at rest",
+                     o.end_time, speed, braking, 3 * braking),
+         {{"speed", speed, "m s-1"}, {"braking_time", braking, "s"}});
 }
 
 /// What points keep of velocity that the grid cannot see moves nothing, and is kinetic energy all the same.
-void advise_on_transfer(const SolveOptions& o, Advice& lines) {
+void advise_on_transfer(const SolveOptions& o) {
   const double time = o.transfer_time.value_or(0);
   if (!abilities_of(o.integrator).carry_inertia || !(o.stop_kinetic_fraction > 0) || time <= o.end_time) return;
   const bool by_preset = o.preset == Preset::reference;
-  lines.emplace_back(
-      "transfer",
-      fmt::format(
-          "velocity finer than the grid decays over {:.3g} s, longer than the run ({}): points keep it at rest, "
-          "and their kinetic energy may never fall to stop_kinetic_fraction = {:g}. {}",
-          time, by_preset ? "preset = \"reference\"" : "transfer_time_s", o.stop_kinetic_fraction,
-          by_preset ? "The run then goes on to end_time_s" : "Leave one of the two out"));
+  advise("transfer",
+         fmt::format(
+             "velocity finer than the grid decays over {:.3g} s, longer than the run ({}): points keep it at rest, "
+             "and their kinetic energy may never fall to stop_kinetic_fraction = {:g}. {}",
+             time, by_preset ? "preset = \"reference\"" : "transfer_time_s", o.stop_kinetic_fraction,
+             by_preset ? "The run then goes on to end_time_s" : "Leave one of the two out"),
+         {{"decay_time", time, "s"}});
 }
 
 }  // namespace
 
-Advice advice(const Plan& plan) {
-  Advice lines;
-  advise_on_points(*plan.domain, lines);
-  advise_on_stiffness(plan, lines);
-  advise_on_friction(plan, lines);
-  advise_on_end(plan, lines);
-  advise_on_transfer(plan.options, lines);
-  return lines;
+void advise_on_plan(const Plan& plan) {
+  advise_on_points(*plan.domain);
+  advise_on_stiffness(plan);
+  advise_on_friction(plan);
+  advise_on_end(plan);
+  advise_on_transfer(plan.options);
 }
 
 }  // namespace talus::solver

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/findings.hpp"
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
@@ -15,22 +16,22 @@ std::string inflow_words(const InflowSummary& i) {
       i.name, i.volume, i.from, i.to, i.peak, i.width, i.depth, i.speed, i.froude);
 }
 
-std::vector<std::string> inflow_warnings(const Scene& scene, const SolveOptions& options) {
-  std::vector<std::string> lines;
+void warn_of_inflows(const Scene& scene, const SolveOptions& options) {
   for (const InflowSummary& i : scene.inflow.summaries) {
     if (i.late_volume > 0)
-      lines.push_back(
-          fmt::format("[[solve.inflow]] name = \"{}\": the run ends at {:g} s, before {:.4g} m3 of its "
-                      "hydrograph have entered. Give a larger end_time_s, unless it is meant so",
-                      i.name, options.end_time, i.late_volume));
+      warn("inflow-cut-off",
+           fmt::format("[[solve.inflow]] name = \"{}\": the run ends at {:g} s, before {:.4g} m3 of its "
+                       "hydrograph have entered. Give a larger end_time_s, unless it is meant so",
+                       i.name, options.end_time, i.late_volume),
+           {{"late_volume", i.late_volume, "m3"}});
     if (i.depth < 0.5 * scene.grid.layer_height)
-      lines.push_back(
-          fmt::format("[[solve.inflow]] name = \"{}\": it enters {:.3g} m deep at most, less than half a "
-                      "layer of {:g} m. Give a smaller layer_height_m in [preprocess.grid], or let it in "
-                      "slower or through a shorter line",
-                      i.name, i.depth, scene.grid.layer_height));
+      warn("thin-inflow",
+           fmt::format("[[solve.inflow]] name = \"{}\": it enters {:.3g} m deep at most, less than half a "
+                       "layer of {:g} m. Give a smaller layer_height_m in [preprocess.grid], or let it in "
+                       "slower or through a shorter line",
+                       i.name, i.depth, scene.grid.layer_height),
+           {{"depth", i.depth, "m"}});
   }
-  return lines;
 }
 
 }  // namespace talus::solver

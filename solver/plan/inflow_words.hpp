@@ -4,7 +4,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
@@ -14,7 +13,7 @@ namespace talus::solver {
 /// One line on an inflow: its volume and times, and its flow at the largest discharge.
 std::string inflow_words(const InflowSummary& inflow);
 
-/// What of the inflows is hardly meant: a flow thinner than half a layer, a hydrograph that the run cuts off.
-std::vector<std::string> inflow_warnings(const Scene& scene, const SolveOptions& options);
+/// Warns of inflows that are hardly meant: a flow thinner than half a layer, a hydrograph that the run cuts off.
+void warn_of_inflows(const Scene& scene, const SolveOptions& options);
 
 }  // namespace talus::solver

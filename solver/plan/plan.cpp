@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/plan/plan.hpp"
 
+#include <algorithm>
 #include <utility>
 
-#include "solver/plan/plausible.hpp"
+#include "solver/plan/checks.hpp"
 #include "solver/plan/step_choice.hpp"
 #include "solver/plan/stiffness.hpp"
-#include "solver/plan/warnings.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
@@ -34,10 +34,37 @@ Plan draft_plan(std::shared_ptr<const Domain> domain, const SolveOptions& option
 
 std::shared_ptr<const Plan> plan(std::shared_ptr<const Domain> domain, const SolveOptions& options, Settle how) {
   Plan made = draft_plan(std::move(domain), options, how);
-  made.accepted = judge_plan(made).facts();
-  made.warnings = warnings(made);
-  made.advice = advice(made);
+  Findings found("solve", made.options.accept, Findings::Log::kept_back);
+  refuse_implausible(made);
+  found.settle();
+  warn_of_plan(made);
+  advise_on_plan(made);
+  made.findings = found.list();
   return std::make_shared<const Plan>(std::move(made));
+}
+
+std::vector<MapPlace> places_of(const Plan& plan) {
+  const SolveOptions& o = plan.options;
+  std::vector<MapPlace> places = plan.domain->obstacles;
+  std::erase_if(places, [&](const MapPlace& place) {
+    return std::ranges::none_of(o.obstacles, [&](const auto& one) { return place.words == "obstacle " + one.name; });
+  });
+  for (const SectionOptions& s : o.sections) {
+    places.push_back({"section " + s.name, {{}}});
+    for (std::size_t i = 0; i < s.x.size(); ++i) places.back().rings[0].push_back({s.x[i], s.y[i]});
+  }
+  for (std::size_t n = 0; n < o.inflows.size(); ++n) {
+    const InflowOptions& i = o.inflows[n];
+    places.push_back({"inflow " + inflow_name(i, n), {{{i.x[0], i.y[0]}, {i.x[1], i.y[1]}}}});
+  }
+  for (const GaugeOptions& g : o.gauges) places.push_back({"gauge " + g.name, {{{g.x, g.y}}}});
+  return places;
+}
+
+std::vector<Finding> findings_of(const Plan& plan) {
+  std::vector<Finding> findings = plan.domain->findings;
+  findings.insert(findings.end(), plan.findings.begin(), plan.findings.end());
+  return findings;
 }
 
 SolveOptions noted_options(const Plan& plan) {

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "common/domain/domain.hpp"
-#include "common/stage/identity.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
-#include "solver/plan/advice.hpp"
 #include "solver/plan/energy_line.hpp"
 
 namespace talus::solver {
@@ -24,9 +23,7 @@ struct Plan {
   Scene scene;                            ///< grid, terrain tables, points, inflows, contacts
   SpeedBound bound;                       ///< of the speed of a flow
   std::vector<std::string> reasons = {};  ///< a line each on what was settled
-  Facts accepted = {};                    ///< implausible numbers that the recipe accepts
-  std::vector<std::string> warnings = {};
-  Advice advice = {};
+  std::vector<Finding> findings = {};     ///< implausible numbers that the recipe accepts, warnings, advice
 };
 
 /// Whether plan() settles stiffness and steps that the options leave to the program, or takes them as they are.
@@ -48,6 +45,12 @@ void settle(Plan& plan);
 /// A plan whose findings are not looked for: what its steps take can be tried, be its numbers plausible or not. Throws
 /// as plan() does of the scene.
 Plan draft_plan(std::shared_ptr<const Domain> domain, const SolveOptions& options, Settle settle = Settle::as_asked);
+
+/// Where the obstacles, sections, inflows and gauges of a run are.
+std::vector<MapPlace> places_of(const Plan& plan);
+
+/// The findings of the domain, then those of the plan.
+std::vector<Finding> findings_of(const Plan& plan);
 
 /// The options as solve.used.toml notes them: those asked for, with the modulus that was settled.
 SolveOptions noted_options(const Plan& plan);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "solver/integrator/shaking.hpp"
 #include "solver/options/solve.hpp"
@@ -18,7 +17,8 @@ inline constexpr double most_final_velocity = 0.05;
 /// One line on an accelerogram: its samples, its largest acceleration and velocity.
 std::string shaking_words(const Shaking& shaking);
 
-/// What of the accelerogram is hardly meant: a ground that does not come to rest, a run that ends before it does.
-std::vector<std::string> shaking_warnings(const Shaking& shaking, const SolveOptions& options);
+/// Warns of what is hardly meant of an accelerogram: a ground that does not come to rest, a run that ends before it
+/// does.
+void warn_of_shaking(const Shaking& shaking, const SolveOptions& options);
 
 }  // namespace talus::solver

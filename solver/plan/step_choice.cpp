@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/findings.hpp"
 #include "solver/options/hindrances.hpp"
 #include "solver/plan/integrator_choice.hpp"
 
@@ -97,16 +98,20 @@ StepChoice choose_steps(const Domain& domain, const SolveOptions& o, const Speed
   return choice;
 }
 
-std::string unkept_accuracy(const Domain& domain, const SolveOptions& o, const EnergyLine& line) {
-  if (!o.accuracy || *o.accuracy >= kept_on_rough_ground) return {};
+void warn_of_unkept_accuracy(const Domain& domain, const SolveOptions& o, const EnergyLine& line) {
+  if (!o.accuracy || *o.accuracy >= kept_on_rough_ground) return;
   const double bend = bend_over_thickness(domain, line);
-  if (bend <= roughest) return {};
-  return fmt::format(
-      "[solve] accuracy = {:g} is not kept on this ground: within a cell it bends by {:.2g} of the thickness of what "
-      "is released, and beyond {:g} of it explicit steps of a tenth of the CFL step, instead of a quarter, moved 5 to "
-      "8 % of the deposits measured. Footprints and speeds hold better; accuracy = {:g} asks for no more than can be "
-      "had",
-      *o.accuracy, bend, roughest, kept_on_rough_ground);
+  if (bend <= roughest) return;
+  warn("unkept-accuracy",
+       fmt::format("[solve] accuracy = {:g} is not kept on this ground: within a cell it bends by {:.2g} of the "
+                   "thickness of what "
+                   "is released, and beyond {:g} of it explicit steps of a tenth of the CFL step, instead of a "
+                   "quarter, moved 5 to "
+                   "8 % of the deposits measured. Footprints and speeds hold better; accuracy = {:g} asks for no more "
+                   "than can be "
+                   "had",
+                   *o.accuracy, bend, roughest, kept_on_rough_ground),
+       {{"curvature_over_thickness", bend, "1"}});
 }
 
 SolveOptions with_steps(SolveOptions o, const StepChoice& choice) {

@@ -24,9 +24,8 @@ struct StepChoice {
 /// recipe's own `cfl`.
 StepChoice choose_steps(const Domain& domain, const SolveOptions& options, const SpeedBound& bound);
 
-/// What is wrong with the `accuracy` that a recipe asks for: no steps keep it on ground that is rough for the flow
-/// (docs/notes/integrators.md). Empty: nothing is known to be.
-std::string unkept_accuracy(const Domain& domain, const SolveOptions& options, const EnergyLine& line);
+/// Warns of an `accuracy` that no steps keep, on ground that is rough for the flow (docs/notes/integrators.md).
+void warn_of_unkept_accuracy(const Domain& domain, const SolveOptions& options, const EnergyLine& line);
 
 /// The options with the choice carried out.
 SolveOptions with_steps(SolveOptions options, const StepChoice& choice);

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/plan/warnings.hpp"
-
+// What a recipe asks that its numbers do not bear out.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
-#include "common/stage/stage.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/boundary/base_friction.hpp"
+#include "solver/plan/checks.hpp"
 #include "solver/plan/inflow_words.hpp"
 #include "solver/plan/plan.hpp"
 #include "solver/plan/shaking_words.hpp"
@@ -68,76 +68,42 @@ double bed_friction(const Domain& domain, const SolveOptions& o) {
   return most;
 }
 
-/// A key that gives an angle of friction inside, and the cone sqrt(J2) = slope p that it asks for.
-struct AskedCone {
-  const char* key;
-  double angle;  ///< [deg]
-  double slope;  ///< [-]
-};
-
-/// The cones that a material's keys ask for, the steepest last; none where its strength is no friction.
-std::vector<AskedCone> cones_of(const MaterialOptions& material) {
-  if (material.model == MaterialModel::drucker_prager) {
-    const auto& law = material.options_of<DruckerPrager>();
-    return {{"friction_angle_deg", law.friction_angle, law.asked_cone(law.friction_angle, law.cohesion).slope}};
-  }
-  if (material.model != MaterialModel::mu_of_i) return {};
-  const auto& law = material.options_of<MuOfI>();
-  return {{"static_friction_angle_deg", law.static_friction_angle, law.internal_friction()},
-          {"limiting_friction_angle_deg", law.limiting_friction_angle, law.limiting_friction()}};
+/// Warns of a cone under which grains would carry tension.
+void warn_of_steep_cone(const AskedCone& asked, const std::string& table) {
+  if (!(asked.slope > steepest_cone)) return;
+  warn("steep-cone",
+       fmt::format("{} {} = {:g} asks for the cone sqrt(J2) = {:.3f} p, under which grains would carry tension. It is "
+                   "held to {:.3f} p, {:.1f} deg in simple shear",
+                   table, asked.key, asked.angle, asked.slope, steepest_cone, std::atan(steepest_cone) * degrees),
+       {{"slope", asked.slope, "1"}});
 }
 
-/// The share of the pressure p [Pa] that a material holds in slow simple shear [-].
-double held_share(const MaterialOptions& material, double pressure) {
-  if (material.model == MaterialModel::mu_of_i) return std::min(material.internal_friction(), steepest_cone);
-  const auto& law = material.options_of<DruckerPrager>();
-  const ConeFit fit = law.cone_of(law.friction_angle, law.cohesion);
-  return (1 - law.pore_pressure_ratio) * fit.slope + (pressure > 0 ? fit.cohesion / pressure : 0);
-}
-
-/// What the grains of a material do not bear out; `table` is its table of the recipe.
-void warn_of_grains(const MaterialOptions& material, const std::string& table, std::vector<std::string>& lines) {
-  if (material.model != MaterialModel::mu_of_i) return;
-  const auto& law = material.options_of<MuOfI>();
-  const double grains = law.grain_density;
-  if (law.dilates()) {
-    constexpr double water = 1000, close = 0.02;
-    const double dry = law.volume_fraction * grains, full = dry + (1 - law.volume_fraction) * water;
-    if (material.density >= (1 - close) * dry && material.density <= (1 + close) * full) return;
-    lines.push_back(fmt::format(
-        "{} density_kg_m3 = {:g} does not go with grain_density_kg_m3 = {:g} and volume_fraction = {:g}. Grains so "
-        "packed have {:g}, and {:g} with water between them",
-        table, material.density, grains, law.volume_fraction, dry, full));
-    return;
-  }
-  if (material.density <= grains) return;
-  lines.push_back(fmt::format(
-      "{} density_kg_m3 = {:g} is that of the mass, pores included, and above grain_density_kg_m3 = {:g}. Dry grains "
-      "fill about 0.6 of the space: give {:g}",
-      table, material.density, grains, 0.6 * grains));
-}
-
-/// What a material's numbers do not bear out; `table` is its table of the recipe.
-void warn_of(const MaterialOptions& material, const std::string& table, double bed, double depth,
-             std::vector<std::string>& lines) {
-  warn_of_grains(material, table, lines);
-  const std::vector<AskedCone> cones = cones_of(material);
-  if (cones.empty()) return;
-  if (const AskedCone& asked = cones.back(); asked.slope > steepest_cone) {
-    lines.push_back(
-        fmt::format("{} {} = {:g} asks for the cone sqrt(J2) = {:.3f} p, under which grains would carry "
-                    "tension. It is held to {:.3f} p, {:.1f} deg in simple shear",
-                    table, asked.key, asked.angle, asked.slope, steepest_cone, std::atan(steepest_cone) * degrees));
-  }
-  const double held = held_share(material, material.density * 9.81 * depth);
+/// Warns of a mass that holds less than its bed asks: `held` and `bed` in shares of the pressure.
+void warn_of_weak_mass(double held, const AskedCone& cone, const std::string& table, double bed) {
   if (!(held < bed)) return;
-  lines.push_back(fmt::format(
-      "the mass gives way inside before it slides on its bed: in simple shear it holds {:.3f} of the pressure ({} {} = "
-      "{:g}), the bed asks up to {:.3f} ({:.1f} deg). Where it does, it moves as on a bed of {:.1f} deg. Give a "
-      "friction "
-      "angle of {:.1f} deg or more (in simple shear; {:g} times the bed's tangent), or lower the bed's",
-      held, table, cones.front().key, cones.front().angle, bed, std::atan(bed) * degrees, std::atan(held) * degrees,
-      std::atan(recommended_ratio * bed) * degrees, recommended_ratio));
+  warn("weaker-than-bed",
+       fmt::format("the mass gives way inside before it slides on its bed: in simple shear it holds {:.3f} of the "
+                   "pressure ({} {} = {:g}), the bed asks up to {:.3f} ({:.1f} deg). Where it does, it moves as on a "
+                   "bed of {:.1f} deg. Give a friction angle of {:.1f} deg or more (in simple shear; {:g} times the "
+                   "bed's tangent), or lower the bed's",
+                   held, table, cone.key, cone.angle, bed, std::atan(bed) * degrees, std::atan(held) * degrees,
+                   std::atan(recommended_ratio * bed) * degrees, recommended_ratio),
+       {{"held", held, "1"}, {"asked", bed, "1"}});
+}
+
+/// Warns of what the numbers of a material do not bear out; `table` is its table of the recipe.
+void warn_of_material(const MaterialOptions& material, const std::string& table, double bed, double depth) {
+  material.with_law([&](auto, const auto& law) {
+    if constexpr (requires { law.density_fault(material.density); })
+      if (const std::string fault = law.density_fault(material.density); !fault.empty())
+        warn("grain-density", fmt::format("{} density_kg_m3 = {:g} {}", table, material.density, fault),
+             {{"density", material.density, "kg m-3"}});
+    if constexpr (requires { law.cones(); }) {
+      const std::vector<AskedCone> cones = law.cones();
+      warn_of_steep_cone(cones.back(), table);
+      warn_of_weak_mass(law.held_share(material.density * 9.81 * depth), cones.front(), table, bed);
+    }
+  });
 }
 
 /// The share of the release in cells with nothing beside them, neither along x nor along y [-].
@@ -158,39 +124,33 @@ double released_alone(const Domain& domain) {
 }
 
 /// Of matter that column-implicit steps let forget its stress (T6d).
-void warn_of_lone_columns(const Domain& domain, const SolveOptions& o, std::vector<std::string>& lines) {
+void warn_of_lone_columns(const Domain& domain, const SolveOptions& o) {
   constexpr double said_from = 0.01, nothing_forgotten = 0.5;
   if (o.integrator != Integrator::column_implicit || o.shape == ShapeKind::linear || o.cfl <= nothing_forgotten) return;
   const auto forgets = [](const MaterialOptions& m) { return !m.holds_tension(); };
   const double share = released_alone(domain);
   if (share < said_from || !o.any_material(forgets)) return;
-  lines.push_back(
-      fmt::format("{:.2g} % of the release are columns one cell wide with nothing beside them. With cfl = {:g}, above "
-                  "{:g}, column-implicit steps let such columns forget part of their stress, and they do not stand "
-                  "without walls. Take cells of half the width, or [solve] cfl = {:g}",
-                  100 * share, o.cfl, nothing_forgotten, nothing_forgotten));
+  warn("lone-columns",
+       fmt::format("{:.2g} % of the release are columns one cell wide with nothing beside them. With cfl = {:g}, above "
+                   "{:g}, column-implicit steps let such columns forget part of their stress, and they do not stand "
+                   "without walls. Take cells of half the width, or [solve] cfl = {:g}",
+                   100 * share, o.cfl, nothing_forgotten, nothing_forgotten),
+       {{"share", share, "1"}});
 }
 
 }  // namespace
 
-std::vector<std::string> warnings(const Plan& plan) {
+void warn_of_plan(const Plan& plan) {
   const Domain& domain = *plan.domain;
   const SolveOptions& options = plan.options;
-  std::vector<std::string> lines;
   const double bed = bed_friction(domain, options), depth = thickness(domain);
-  warn_of(options.material, "[solve.material]", bed, depth, lines);
+  warn_of_material(options.material, "[solve.material]", bed, depth);
   for (const PartOptions& part : options.parts)
-    warn_of(part.material, fmt::format("[[solve.part]] \"{}\"", part.release), bed, depth, lines);
-  warn_of_lone_columns(domain, options, lines);
-  for (const std::string& line : inflow_warnings(plan.scene, options)) lines.push_back(line);
-  for (const std::string& line : shaking_warnings(plan.scene.shaking, options)) lines.push_back(line);
-  if (std::string line = unkept_accuracy(domain, plan.asked, plan.bound.line); !line.empty()) lines.push_back(line);
-  return lines;
-}
-
-void say_warnings_of_domain(const Domain& domain) {
-  for (const auto& [name, words] : domain.provenance)
-    if (name.starts_with("warning.")) log_warning(words);
+    warn_of_material(part.material, fmt::format("[[solve.part]] \"{}\"", part.release), bed, depth);
+  warn_of_lone_columns(domain, options);
+  warn_of_inflows(plan.scene, options);
+  warn_of_shaking(plan.scene.shaking, options);
+  warn_of_unkept_accuracy(domain, plan.asked, plan.bound.line);
 }
 
 }  // namespace talus::solver

@@ -42,8 +42,8 @@ std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptio
   return fingerprint;
 }
 
-Facts made_by(const StageContext& context, const SolveOptions& o, Facts facts) {
-  facts.emplace_back(recipe_of_run, recipe_mark(context.recipe, "solve"));
+Facts made_by(const StageContext& context, const SolveOptions& o) {
+  Facts facts{{recipe_of_run, recipe_mark(context.recipe, "solve")}};
   for (std::size_t n = 0; n < o.inflows.size(); ++n)
     if (!o.inflows[n].file.empty())
       facts.emplace_back("hydrograph." + inflow_name(o.inflows[n], n) + ".sha256", sha256(o.inflows[n].file));
@@ -51,14 +51,14 @@ Facts made_by(const StageContext& context, const SolveOptions& o, Facts facts) {
   return facts;
 }
 
-Facts judge_inputs(const StageContext& context, const SolveOptions& o, const std::filesystem::path& file,
-                   const Domain& domain) {
-  Facts facts = judge_maker(context.recipe, {.file = file,
-                                             .table = "preprocess",
-                                             .mark = fact(domain.provenance, recipe_of_domain),
-                                             .program = "talus-preprocess",
-                                             .key = "domain in [solve]",
-                                             .named = !o.domain.empty()});
+void judge_inputs(const StageContext& context, const SolveOptions& o, const std::filesystem::path& file,
+                  const Domain& domain) {
+  judge_maker(context.recipe, {.file = file,
+                               .table = "preprocess",
+                               .mark = fact(domain.provenance, recipe_of_domain),
+                               .program = "talus-preprocess",
+                               .key = "domain in [solve]",
+                               .named = !o.domain.empty()});
   const std::string written = fact(domain.provenance, obstacles_checksum);
   const auto bodies = context.out / "obstacles.vdb";
   const auto reads = [&](const ObstacleOptions& obstacle) { return obstacle.level_set == bodies; };
@@ -70,7 +70,6 @@ Facts judge_inputs(const StageContext& context, const SolveOptions& o, const std
            fmt::format("its SHA-256 is {:.16}..., that of the file written with it {:.16}...", found, written),
            "Run talus-preprocess again"});
   }
-  return facts;
 }
 
 }  // namespace talus::solver

@@ -27,13 +27,12 @@ std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const 
 /// What identifies the work of a run: a checkpoint of other inputs or settings is not taken up.
 std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptions& options);
 
-/// What goes into the results beside the facts of the domain: the mark of the recipe, the checksum of the accelerogram;
-/// then `facts`.
-Facts made_by(const StageContext& context, const SolveOptions& options, Facts facts);
+/// What goes into the results beside the facts of the domain: the mark of the recipe, checksums of hydrographs and
+/// accelerogram.
+Facts made_by(const StageContext& context, const SolveOptions& options);
 
-/// This function refuses a domain that another recipe made, and level sets that were not written with it. It returns
-/// the facts of what is insisted on.
-Facts judge_inputs(const StageContext& context, const SolveOptions& options, const std::filesystem::path& file,
-                   const Domain& domain);
+/// This function refuses a domain that another recipe made, and level sets that were not written with it.
+void judge_inputs(const StageContext& context, const SolveOptions& options, const std::filesystem::path& file,
+                  const Domain& domain);
 
 }  // namespace talus::solver

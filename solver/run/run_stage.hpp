@@ -27,11 +27,11 @@ struct RunFlags {
 /// The checkpoint that the flags go on from; none where they begin.
 std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const std::filesystem::path& out);
 
-/// This function runs a plan and writes its results. `facts` are what was accepted of its inputs. It adds to the
-/// context's results and returns the facts for the used recipe, none where nothing ran. It throws NumericalError,
-/// Interrupted with a checkpoint left behind, RecipeError and DataError.
+/// This function runs a plan and writes its results. It adds to the context's results and returns the facts for the
+/// used recipe, none where nothing ran. It throws NumericalError, Interrupted with a checkpoint left behind,
+/// RecipeError and DataError.
 Facts run_in_time(StageContext& context, const RunFlags& flags, const std::shared_ptr<const Plan>& plan,
-                  const AnyDevice& device, const Facts& facts);
+                  const AnyDevice& device);
 
 /// This function goes on from a checkpoint where the flags ask for it. One of this very run that they do not ask for is
 /// refused: hours of work would go without a word.

@@ -91,44 +91,54 @@ RunSanity sanity_of(const RunEnd& end, const RunHistory& history, double outflow
     sanity.energy_gain = energy_gain(history);
     sanity.speed_bound = speed_of_fall(end);
   }
-  const std::vector<std::string> faults = insane(sanity);
-  sanity.words = faults.empty() ? "sane" : fmt::format("{}", fmt::join(faults, "; "));
+  for (const Finding& found : insane(sanity))
+    sanity.words += fmt::format("{}{}", sanity.words.empty() ? "" : "; ", found.message);
+  if (sanity.words.empty()) sanity.words = "sane";
   return sanity;
 }
 
-std::vector<std::string> insane(const RunSanity& s, const SanityBounds& bounds) {
-  std::vector<std::string> faults;
+std::vector<Finding> insane(const RunSanity& s, const SanityBounds& bounds) {
+  std::vector<Finding> found;
+  const auto add = [&](const char* name, std::string message, const char* number, double value, const char* unit) {
+    found.push_back({Severity::warning, name, std::move(message), {{number, value, unit}}});
+  };
   if (std::abs(s.volume_error) > bounds.volume_error)
-    faults.push_back(fmt::format("volume is off by {:.2g} of what was there at the start", s.volume_error));
+    add("volume-error", fmt::format("volume is off by {:.2g} of what was there at the start", s.volume_error),
+        "volume_error", s.volume_error, "1");
   if (s.volume_left > bounds.volume_left)
-    faults.push_back(
-        fmt::format("{:.0f} % of the volume left the domain: the maps show the rest", 100 * s.volume_left));
+    add("volume-left-domain",
+        fmt::format("{:.0f} % of the volume left the domain: the maps show the rest", 100 * s.volume_left),
+        "volume_left", s.volume_left, "1");
   if (s.packing_p99 > bounds.packing_p99)
-    faults.push_back(
+    add("dense-packing",
         fmt::format("a hundredth of the volume was packed {:.2f} times and denser: points have drifted together "
                     "within cells, or a soft mass was squashed",
-                    s.packing_p99));
+                    s.packing_p99),
+        "packing_p99", s.packing_p99, "1");
   if (s.energy_gain > bounds.energy_gain)
-    faults.push_back(
-        fmt::format("the energy rose by {:.2g} of what was turned over, though nothing did work", s.energy_gain));
+    add("energy-gain",
+        fmt::format("the energy rose by {:.2g} of what was turned over, though nothing did work", s.energy_gain),
+        "energy_gain", s.energy_gain, "1");
   if (s.speed_max > bounds.speed_share * s.speed_bound)
-    faults.push_back(
+    add("faster-than-fall",
         fmt::format("a point ran at {:.4g} m/s, and a fall without loss to where the mass came gives "
                     "{:.4g} m/s",
-                    s.speed_max, s.speed_bound));
-  return faults;
+                    s.speed_max, s.speed_bound),
+        "speed_max", s.speed_max, "m s-1");
+  return found;
 }
 
-std::string sanity_line(const RunSanity& s) {
+void say_sanity(const RunSanity& s) {
   const auto or_none = [](double value, const std::string& text) { return std::isfinite(value) ? text : "unknown"; };
-  return fmt::format(
+  log_info(fmt::format(
       "sanity: volume error {:.1e}, {:.2g} of it left; packing {} for 99 % of the volume, {} at most; energy gain {}; "
       "fastest point {}, fall without loss {}: {}",
       s.volume_error, s.volume_left, or_none(s.packing_p99, fmt::format("{:.2f}", s.packing_p99)),
       or_none(s.packing_max, fmt::format("{:.2f}", s.packing_max)),
       or_none(s.energy_gain, fmt::format("{:.1e}", s.energy_gain)),
       or_none(s.speed_max, fmt::format("{:.1f} m/s", s.speed_max)),
-      or_none(s.speed_bound, fmt::format("{:.1f} m/s", s.speed_bound)), s.words);
+      or_none(s.speed_bound, fmt::format("{:.1f} m/s", s.speed_bound)), s.words));
+  for (Finding& found : insane(s)) add_finding(std::move(found));
 }
 
 }  // namespace talus::solver

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "common/run/run_file.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/run/products.hpp"
 
 namespace talus::solver {
@@ -21,10 +22,10 @@ struct SanityBounds {
 /// left the domain [m3].
 RunSanity sanity_of(const RunEnd& end, const RunHistory& history, double outflow);
 
-/// The words on what is beyond its bound, with the numbers; empty where nothing is.
-std::vector<std::string> insane(const RunSanity& sanity, const SanityBounds& bounds = {});
+/// Warnings of what is beyond its bound; none where nothing is.
+std::vector<Finding> insane(const RunSanity& sanity, const SanityBounds& bounds = {});
 
-/// One line with all numbers.
-std::string sanity_line(const RunSanity& sanity);
+/// Logs one line with all numbers, and adds the warnings.
+void say_sanity(const RunSanity& sanity);
 
 }  // namespace talus::solver

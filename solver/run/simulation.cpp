@@ -12,20 +12,9 @@
 #include "solver/run/progress.hpp"
 #include "solver/run/recorders/check_checkpoint.hpp"
 #include "solver/run/recorders/frame_store.hpp"
-#include "solver/run/recorders/stretch.hpp"
 #include "solver/run/sanity.hpp"
 
 namespace talus::solver {
-namespace {
-
-/// What a run is warned of at its end goes into its results, as what it was warned of before does.
-void add_warnings_of_end(const std::vector<std::string>& lines, Facts& provenance) {
-  std::size_t number = 0;
-  for (const auto& [name, words] : provenance) number += name.starts_with("warning.solve.") ? 1U : 0U;
-  for (const std::string& line : lines) provenance.emplace_back(fmt::format("warning.solve.{}", number++), line);
-}
-
-}  // namespace
 
 void remove_leftovers(const RunPaths& paths) {
   remove_for_good(paths.checkpoint);
@@ -58,7 +47,9 @@ void Simulation::start() {
   loop_.start();
 }
 
-RunSummary Simulation::run(const std::string& scene, const std::string& title, const std::optional<Facts>& facts) {
+RunSummary Simulation::run(const std::string& scene, const std::string& title, const std::optional<Facts>& facts,
+                           const std::optional<std::vector<Finding>>& findings) {
+  const Findings found("solve", loop_.options().accept);
   timer_.start();
   const bool fresh = !loop_.stepper().begun();
   if (fresh) start();
@@ -75,7 +66,9 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title, c
   summary.stop_reason = marks_.stop_reason;
   summary.provenance = facts.value_or(loop_.plan().domain->provenance);
   summary.provenance.emplace_back(run_id, marks_.id);
-  return finish(std::move(summary));
+  summary.places = places_of(loop_.plan());
+  summary.findings = findings ? *findings : findings_of(loop_.plan());
+  return finish(std::move(summary), found);
 }
 
 void Simulation::put_frame(double time, std::int64_t number) { frames_.put(time, number, loop_.stepper().solver()); }
@@ -115,11 +108,6 @@ void Simulation::save_checkpoint() {
   frames_.drop_others();  // of the run whose checkpoint this one has replaced
 }
 
-void Simulation::report_sanity(const RunSanity& sanity) const {
-  log_info(sanity_line(sanity));
-  for (const std::string& fault : insane(sanity)) log_warning(fault);
-}
-
 void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   const Solver& solver = loop_.stepper().solver();
   const AnyDevice& device = loop_.stepper().device();
@@ -149,19 +137,15 @@ void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
   summary.sanity = sanity_of(end, loop_.history().rows(), loop_.memory().outflow_volume);
 }
 
-RunSummary Simulation::finish(RunSummary summary) {
+RunSummary Simulation::finish(RunSummary summary, const Findings& found) {
   const SolverState state = loop_.stepper().solver().state();
   loop_.memory().wall_time = timer_.seconds();
   const RunEnd end = loop_.end(state);
   measure(end, summary);
-  for (auto& fact : torn_body_accepted(loop_.options(), loop_.history().rows()))
-    summary.provenance.push_back(std::move(fact));
-  const std::vector<std::string> warnings = loop_.history().warnings();
-  add_warnings_of_end(warnings, summary.provenance);
+  loop_.history().conclude();
+  say_sanity(summary.sanity);
+  summary.findings.insert(summary.findings.end(), found.list().begin(), found.list().end());
   write_run(end, summary);
-  for (const std::string& line : loop_.history().conclusions()) log_info(line);
-  for (const std::string& line : warnings) log_warning(line);
-  report_sanity(summary.sanity);
   log_detail(fmt::format("files: {:.1f} s after the last step", timer_.seconds() - loop_.memory().wall_time));
   remove_for_good(paths_.checkpoint);  // the run is whole: nothing is left to go on with
   frames_.clear();                     // after the checkpoint that counts on them

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/run/run_file.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/stage.hpp"
@@ -47,9 +48,10 @@ class Simulation : private RunKeeper {
 
   /// The method steps to the end and writes run.h5, with whether its numbers are sane. It throws NumericalError,
   /// DataError, and Interrupted (checkpoint left). An older run.h5 stays until the new one is whole, an older
-  /// checkpoint with its frames until this run has one of its own or is whole. `facts` go with the results; those of
-  /// the domain do where none are given.
-  RunSummary run(const std::string& scene, const std::string& title, const std::optional<Facts>& facts = {});
+  /// checkpoint with its frames until this run has one of its own or is whole. `facts` and `findings` go with the
+  /// results; those of the domain, and of the plan, do where none are given.
+  RunSummary run(const std::string& scene, const std::string& title, const std::optional<Facts>& facts = {},
+                 const std::optional<std::vector<Finding>>& findings = {});
 
  private:
   void put_frame(double time, std::int64_t number) override;
@@ -59,8 +61,7 @@ class Simulation : private RunKeeper {
   void stop_if_interrupted_at_the_end();
   [[noreturn]] void stop();
   void save_checkpoint();
-  void report_sanity(const RunSanity& sanity) const;
-  RunSummary finish(RunSummary summary);
+  RunSummary finish(RunSummary summary, const Findings& found);
   void write_run(const RunEnd& end, const RunSummary& summary);
   void measure(const RunEnd& end, RunSummary& summary) const;
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/findings.hpp"
 #include "solver/parallel/atomics.hpp"
 #include "solver/scene/make_scene.hpp"
 
@@ -41,7 +42,8 @@ void StepWatch::look(const BatchReport& batch) {
   const bool stands = time + step == time && time < end_time_;
   // Not a number, where a rate is infinite and a wave as fast.
   if (stands || !(step >= least_step_share * end_time_)) refuse(batch, step);
-  if (batch.stats.newton == 0 && step < collapsed_share * first_step_ && !warned_) warn(batch.clock, step);
+  if (batch.stats.newton == 0 && step < collapsed_share * first_step_ && !warned_)
+    warn_of_short_steps(batch.clock, step);
 }
 
 void StepWatch::refuse(const BatchReport& batch, double step) const {
@@ -68,16 +70,17 @@ void StepWatch::refuse(const BatchReport& batch, double step) const {
                                     cfl_)});
 }
 
-void StepWatch::warn(const Clock& clock, double step) {
+void StepWatch::warn_of_short_steps(const Clock& clock, double step) {
   warned_ = true;
   const double fast = speed_of(clock), left = (end_time_ - clock.time) / step;
-  log_warning(
-      fmt::format("t {:.3f} s: steps have fallen to {:.3g} s, {:.2g} of those of the mass at rest ({:.3g} s): the "
-                  "fastest point runs at {:.3g} m/s, waves at {:.3g} m/s and more where the mass is squashed. Some "
-                  "{:.2g} steps are left. {}",
-                  clock.time, step, step / first_step_, first_step_, fast, wave_speed_, left,
-                  fast > wave_speed_ ? "A stiffer youngs_modulus_Pa keeps the mass from being squashed"
-                                     : "A material that stiffens as it is squashed or stretched shortens them"));
+  warn("short-steps",
+       fmt::format("t {:.3f} s: steps have fallen to {:.3g} s, {:.2g} of those of the mass at rest ({:.3g} s): the "
+                   "fastest point runs at {:.3g} m/s, waves at {:.3g} m/s and more where the mass is squashed. Some "
+                   "{:.2g} steps are left. {}",
+                   clock.time, step, step / first_step_, first_step_, fast, wave_speed_, left,
+                   fast > wave_speed_ ? "A stiffer youngs_modulus_Pa keeps the mass from being squashed"
+                                      : "A material that stiffens as it is squashed or stretched shortens them"),
+       {{"time", clock.time, "s"}, {"step", step, "s"}, {"speed", fast, "m s-1"}});
 }
 
 }  // namespace talus::solver

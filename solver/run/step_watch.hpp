@@ -13,7 +13,7 @@ namespace talus::solver {
 /// day.
 inline constexpr double least_step_share = 1e-10;
 /// The share of the step at the start, mass at rest, below which steps have collapsed. A mass at five times the speed
-/// of its waves, beyond which it is refused (plausible.hpp), takes steps a tenth as long.
+/// of its waves, beyond which it is refused (plausible.cpp), takes steps a tenth as long.
 inline constexpr double collapsed_share = 0.02;
 
 /// The watch over the steps of a run.
@@ -31,7 +31,7 @@ class StepWatch {
 
  private:
   [[noreturn]] void refuse(const BatchReport& batch, double step) const;
-  void warn(const Clock& clock, double step);
+  void warn_of_short_steps(const Clock& clock, double step);
 
   double spacing_;       ///< [m]
   double layer_height_;  ///< [m]

@@ -62,7 +62,7 @@ test_a_file_that_the_recipe_names_is_taken_and_the_results_say_so() {
   expect_exit 0 solve
   expect_words 'accepted, "another-recipe": ' "another recipe made it"
   expect_exit 0 postprocess
-  grep -q '"accepted.another-recipe"' out/score.json || fail "score.json does not say what was insisted on"
+  grep -q '"name": "another-recipe"' out/score.json || fail "score.json does not say what was insisted on"
 }
 
 test_a_survey_of_another_preparation_is_refused() {

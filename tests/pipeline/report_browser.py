@@ -256,11 +256,11 @@ def check_layers_and_console(browser):
 
 
 def accepted(browser, out):
-    """What was insisted on is seen, with its words, in the scores."""
-    text = browser.find_element(By.ID, "score").text
-    assert "swapped-surveys" in text and "mass goes down" in text, f"the scores do not say what was accepted: {text}"
-    row = browser.find_element(By.CSS_SELECTOR, "#score td[data-key^='accepted.']")
-    table = browser.find_element(By.CSS_SELECTOR, "#score table")
+    """What was insisted on is seen, with its words, among the findings."""
+    text = browser.find_element(By.ID, "findings").text
+    assert "swapped-surveys" in text and "mass goes down" in text, f"the findings do not say what was accepted: {text}"
+    row = browser.find_element(By.CSS_SELECTOR, "#findings td[data-finding='swapped-surveys']")
+    table = browser.find_element(By.CSS_SELECTOR, "#findings table")
     assert row.is_displayed() and table.size["width"] <= 1300, f"the table is {table.size['width']} wide"
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", row)
     browser.save_screenshot(f"{out}/accepted.png")

@@ -21,7 +21,7 @@ class ResultsTest(unittest.TestCase):
         self.assertEqual(self.run_.facts["title"], "Bowl")
         self.assertEqual(self.run_.facts["volume_released_m3"], 6400.0)
         self.assertEqual(self.run_.provenance["released_cells"], "16")
-        self.assertIn("warning.coarse_grid", self.run_.remarks)
+        self.assertIn("coarse-grid", [found["name"] for found in self.run_.findings if found["severity"] == "warning"])
         self.assertIn("256 points", repr(self.run_))
 
     def test_history_has_the_columns_of_the_csv_with_units(self):

@@ -15,7 +15,7 @@ import { Relief } from "./relief.js";
 import { labelCells } from "./stack.js";
 import { drawSummary } from "./summary.js";
 import { drawSurveys } from "./surveys.js";
-import { drawInputs, drawParameters, drawScores, drawVersions, drawVolumes } from "./tables.js";
+import { drawFindings, drawInputs, drawParameters, drawScores, drawVersions, drawVolumes } from "./tables.js";
 
 function complain(words) {
   const box = document.getElementById("trouble");
@@ -60,6 +60,7 @@ async function draw() {
   drawSummary(data);
   drawPlaceList(data);
   drawBudget(data);
+  drawFindings(data);
   drawScores(data);
   drawHazard(data);
   drawSurveys(data);

@@ -50,7 +50,7 @@ function table(head, rows) {
   );
 }
 
-/** Whole sentences, as of what the analyst accepted, take the place of the definition too, where they can wrap. */
+/** Whole sentences take the place of the definition too, where they can wrap. */
 function scoreRow(item, reference) {
   const { key, label, value } = item.entry,
     sentence = typeof value === "string" && value.length > 40;
@@ -107,6 +107,25 @@ export function drawScores(data) {
       score.notes.map((note) => h("li", {}, note)),
     ),
   );
+}
+
+const severities = { advice: "Advice", warning: "Warning", refusal: "Refused, and accepted by the recipe" };
+
+/** What the stages found doubtful. */
+export function drawFindings(data) {
+  const { findings } = data.score,
+    row = (f) =>
+      h(
+        "tr",
+        {},
+        h("td", {}, severities[f.severity]),
+        h("td", { class: "plain", "data-finding": f.name }, f.message, h("div", { class: "note" }, h("code", {}, f.name))),
+        h("td", {}, h("code", {}, `[${f.stage}]`)),
+      );
+  document.getElementById("findings-section").hidden = findings.length === 0;
+  document
+    .getElementById("findings")
+    .append(table([h("th", {}, "Severity"), h("th", {}, "Finding"), h("th", {}, "Table")], findings.map(row)));
 }
 
 /** From which thickness on an area counts, for each body. */

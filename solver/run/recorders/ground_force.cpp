@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/findings.hpp"
+#include "common/stage/stage.hpp"
 namespace talus::solver {
 namespace {
 
@@ -47,7 +49,7 @@ void GroundForceRecorder::record(const Instant& now, RunHistory& history) {
   }
 }
 
-std::vector<std::string> GroundForceRecorder::conclusions(const RunHistory& history) const {
+void GroundForceRecorder::conclude(const RunHistory& history) const {
   const auto& time = history.at("time_s").values;
   double most = 0, when = 0;
   for (std::size_t row = 0; row < time.size(); ++row) {
@@ -57,19 +59,17 @@ std::vector<std::string> GroundForceRecorder::conclusions(const RunHistory& hist
     most = size;
     when = time[row];
   }
-  if (!(most > 0)) return {};
-  return {
-      fmt::format("largest force on the ground beyond the weight at rest: {:.4g} N until t = {:.2f} s", most, when)};
-}
-
-std::vector<std::string> GroundForceRecorder::warnings(const RunHistory& history) const {
+  if (most > 0)
+    log_info(
+        fmt::format("largest force on the ground beyond the weight at rest: {:.4g} N until t = {:.2f} s", most, when));
   const auto& forces = history.at(directions[0].force).values;
   const auto without = std::count_if(forces.begin(), forces.end(), [](double f) { return std::isnan(f); });
-  if (without == 0) return {};
-  return {
-      fmt::format("the force on the ground is not known in {} of {} records, in whose time matter left the domain. "
-                  "Take a larger domain",
-                  without, forces.size())};
+  if (without == 0) return;
+  warn("unknown-ground-force",
+       fmt::format("the force on the ground is not known in {} of {} records, in whose time matter left the domain. "
+                   "Take a larger domain",
+                   without, forces.size()),
+       {{"records", static_cast<double>(without), "1"}});
 }
 
 }  // namespace talus::solver

@@ -24,9 +24,7 @@ class GroundForceRecorder : public Recorder {
   /// The method appends the force since the row before, whose momentum the history holds.
   void record(const Instant& now, RunHistory& history) override;
   /// The line on the largest force.
-  std::vector<std::string> conclusions(const RunHistory& history) const override;
-  /// What to say where rows are without a force.
-  std::vector<std::string> warnings(const RunHistory& history) const override;
+  void conclude(const RunHistory& history) const override;
 };
 
 }  // namespace talus::solver

@@ -170,20 +170,8 @@ double History::last(const std::string& name) const {
   return column && !column->values.empty() ? column->values.back() : 0;
 }
 
-std::vector<std::string> History::conclusions() const {
-  std::vector<std::string> lines;
-  for (const auto& recorder : recorders_) {
-    for (std::string& line : recorder->conclusions(rows_)) lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
-std::vector<std::string> History::warnings() const {
-  std::vector<std::string> lines;
-  for (const auto& recorder : recorders_) {
-    for (std::string& line : recorder->warnings(rows_)) lines.push_back(std::move(line));
-  }
-  return lines;
+void History::conclude() const {
+  for (const auto& recorder : recorders_) recorder->conclude(rows_);
 }
 
 }  // namespace talus::solver

@@ -35,10 +35,8 @@ class History {
   const RunHistory& rows() const { return rows_; }
   /// The last value of a column, 0 before the first record.
   double last(const std::string& name) const;
-  /// The lines for the log at the end of the run.
-  std::vector<std::string> conclusions() const;
-  /// What went wrong on the way, for the log at the end of the run.
-  std::vector<std::string> warnings() const;
+  /// The method logs results and adds findings at the end of the run.
+  void conclude() const;
 
  private:
   std::vector<std::unique_ptr<Recorder>> recorders_;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/stage.hpp"
 namespace talus::solver {
 namespace {
 
@@ -32,9 +33,8 @@ ObstacleRecorder::ObstacleRecorder(const SolveOptions& options)
   for (const ObstacleOptions& o : options.obstacles) names_.push_back(o.name);
 }
 
-std::vector<std::string> ObstacleRecorder::conclusions(const RunHistory& history) const {
+void ObstacleRecorder::conclude(const RunHistory& history) const {
   const std::vector<double>& time = history.at("time_s").values;
-  std::vector<std::string> lines;
   for (const std::string& name : names_) {
     const std::vector<double>* impulse[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -47,11 +47,10 @@ std::vector<std::string> ObstacleRecorder::conclusions(const RunHistory& history
       if (force > peak) when = time[row];
       peak = std::max(peak, force);
     }
-    lines.push_back(fmt::format(
+    log_info(fmt::format(
         "obstacle {}: impulse ({:.4g}, {:.4g}, {:.4g}) N s, largest mean force over {:g} s {:.4g} N until t = {:.2f} s",
         name, impulse[0]->back(), impulse[1]->back(), impulse[2]->back(), interval_, peak, when));
   }
-  return lines;
 }
 
 }  // namespace talus::solver

@@ -13,7 +13,7 @@ class ObstacleRecorder : public TableRecorder<Vec3<double>> {
  public:
   explicit ObstacleRecorder(const SolveOptions& options);
   /// The lines on every obstacle: the impulse in all, and the largest mean force between two records and its time.
-  std::vector<std::string> conclusions(const RunHistory& history) const override;
+  void conclude(const RunHistory& history) const override;
 
  protected:
   std::vector<Vec3<double>> samples(const Instant& now) const override { return now.solver.obstacle_impulses(); }

@@ -51,10 +51,8 @@ class Recorder {
   virtual void keep(RunMemory&) const {}
   /// The method goes on from what was written down. It throws DataError where that does not fit.
   virtual void restore(const RunMemory&) {}
-  /// The lines for the log at the end of the run.
-  virtual std::vector<std::string> conclusions(const RunHistory&) const { return {}; }
-  /// What went wrong on the way, for the log at the end of the run.
-  virtual std::vector<std::string> warnings(const RunHistory&) const { return {}; }
+  /// The method logs results and adds findings at the end of the run.
+  virtual void conclude(const RunHistory&) const {}
   /// Whether its columns tell if a run can be trusted, also where nobody reads them otherwise.
   virtual bool judges() const { return false; }
 };

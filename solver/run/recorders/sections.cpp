@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "common/map/bilinear.hpp"
+#include "common/stage/findings.hpp"
+#include "common/stage/stage.hpp"
 #include "solver/run/recorders/crossing.hpp"
 
 namespace talus::solver {
@@ -272,32 +274,24 @@ void SectionRecorder::restore(const RunMemory& memory) {
   y_ = memory.section_y;
 }
 
-std::vector<std::string> SectionRecorder::conclusions(const RunHistory& history) const {
-  std::vector<std::string> lines;
+void SectionRecorder::conclude(const RunHistory& history) const {
   const std::vector<double>& time = history.at("time_s").values;
   for (const Line& line : lines_) {
     const auto& passed = history.at(section_prefix(line.name) + "passed_m3").values;
     const auto& discharge = history.at(section_prefix(line.name) + "discharge_m3_s").values;
     const auto most = std::max_element(discharge.begin(), discharge.end(),
                                        [](double a, double b) { return std::abs(a) < std::abs(b); });
-    lines.push_back(fmt::format("section {}: {:.4g} m3 passed, largest mean discharge {:.4g} m3/s until t = {:.2f} s",
-                                line.name, passed.back(), *most,
-                                time[static_cast<std::size_t>(most - discharge.begin())]));
-  }
-  return lines;
-}
-
-std::vector<std::string> SectionRecorder::warnings(const RunHistory& history) const {
-  std::vector<std::string> lines;
-  for (const Line& line : lines_) {
+    log_info(fmt::format("section {}: {:.4g} m3 passed, largest mean discharge {:.4g} m3/s until t = {:.2f} s",
+                         line.name, passed.back(), *most, time[static_cast<std::size_t>(most - discharge.begin())]));
     const double unseen = history.at(section_prefix(line.name) + "unseen_m3").values.back();
     if (!(unseen > 0)) continue;
-    lines.push_back(fmt::format(
-        "section {}: {:.4g} m3 left the domain so near to it that they may have crossed it unseen. Move the section "
-        "away from the edge of the domain, or take a larger domain",
-        line.name, unseen));
+    warn("passed-unseen",
+         fmt::format("section {}: {:.4g} m3 left the domain so near to it that they may have crossed it unseen. Move "
+                     "the section "
+                     "away from the edge of the domain, or take a larger domain",
+                     line.name, unseen),
+         {{"volume", unseen, "m3"}});
   }
-  return lines;
 }
 
 }  // namespace talus::solver

@@ -46,9 +46,7 @@ class SectionRecorder : public TableRecorder<SectionReading> {
   void keep(RunMemory& memory) const override;
   void restore(const RunMemory& memory) override;
   /// The lines on every section: the volume that passed, the largest discharge and its time.
-  std::vector<std::string> conclusions(const RunHistory& history) const override;
-  /// What to say where matter left the domain close to a section.
-  std::vector<std::string> warnings(const RunHistory& history) const override;
+  void conclude(const RunHistory& history) const override;
 
  protected:
   std::vector<SectionReading> samples(const Instant& now) const override;

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "common/stage/acceptance.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/parallel/math.hpp"
 
 namespace talus::solver {
@@ -59,7 +59,8 @@ StretchRecorder::StretchRecorder(const SolveOptions& options, const Scene& scene
     : TableRecorder(stretch_columns, {Place{}}),
       limits_{limits_of(options.material)},
       cell_volume_(scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height),
-      bears_gaps_(options.shape == ShapeKind::gimp || accepts_torn_body(options)) {
+      accepts_torn_(options.shape != ShapeKind::gimp && std::ranges::count(options.accept, torn_body) > 0),
+      bears_gaps_(options.shape == ShapeKind::gimp || accepts_torn_) {
   for (const PartOptions& part : options.parts) limits_.push_back(limits_of(part.material));
 }
 
@@ -99,37 +100,26 @@ void StretchRecorder::refuse_torn(const Overstretched& found, double time) const
            torn_body)});
 }
 
-std::vector<std::string> StretchRecorder::warnings(const RunHistory& history) const {
-  std::vector<std::string> lines;
+void StretchRecorder::conclude(const RunHistory& history) const {
   const double points = most(history, "overstretched_points"), apart = most(history, "points_apart");
   const double largest = most(history, "largest_stretch");
   if (points > 0)
-    lines.push_back(
-        fmt::format("{:.0f} points of model = \"hencky\" were stretched by a factor of up to {:.3g}. Beyond e = 2.72 "
-                    "their nominal stress falls, and what is pulled further tears. Take model = \"neo-hookean\", "
-                    "whose stress grows with every stretch",
-                    points, largest));
+    warn("overstretched",
+         fmt::format("{:.0f} points of model = \"hencky\" were stretched by a factor of up to {:.3g}. Beyond e = 2.72 "
+                     "their nominal stress falls, and what is pulled further tears. Take model = \"neo-hookean\", "
+                     "whose stress grows with every stretch",
+                     points, largest),
+         {{"points", points, "1"}, {"stretch", largest, "1"}});
   if (apart > 0)
-    lines.push_back(
-        fmt::format("{:.0f} points were stretched by a factor of up to {:.3g}, to more than {:g} of a cell from the "
-                    "next. There the grid hardly ties them together, and the body may part where no strength says "
-                    "so. Take more points_per_cell, or shape = \"gimp\"; the energies of the history show a tear as "
-                    "a fall",
-                    apart, largest, widest_spacing));
-  return lines;
-}
-
-bool accepts_torn_body(const SolveOptions& options) {
-  return std::find(options.accept.begin(), options.accept.end(), torn_body) != options.accept.end();
-}
-
-Facts torn_body_accepted(const SolveOptions& options, const RunHistory& history) {
-  if (!accepts_torn_body(options)) return {};
-  Acceptance acceptance("solve", {torn_body});
-  const double apart = history.find("points_apart") ? most(history, "points_apart") : 0;
-  if (apart > 0 && options.shape != ShapeKind::gimp)
-    acceptance.judge({torn_body, {torn_words(apart, most(history, "largest_stretch")), why_torn, ""}});
-  return acceptance.facts();
+    warn("points-apart",
+         fmt::format("{:.0f} points were stretched by a factor of up to {:.3g}, to more than {:g} of a cell from the "
+                     "next. There the grid hardly ties them together, and the body may part where no strength says "
+                     "so. Take more points_per_cell, or shape = \"gimp\"; the energies of the history show a tear as "
+                     "a fall",
+                     apart, largest, widest_spacing),
+         {{"points", apart, "1"}, {"stretch", largest, "1"}});
+  if (apart > 0 && accepts_torn_)
+    refuse_unless_accepted(torn_body, {torn_words(apart, largest), why_torn, ""}, {{"points", apart, "1"}});
 }
 
 }  // namespace talus::solver

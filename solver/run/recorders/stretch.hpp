@@ -3,7 +3,6 @@
 // Recorder of points that are stretched beyond what their law bears: no tearing in silence.
 #pragma once
 
-#include "common/stage/identity.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/run/recorders/recorder.hpp"
 
@@ -31,8 +30,7 @@ class StretchRecorder : public TableRecorder<Overstretched> {
   /// Whether some material of the scene has such a law.
   static bool watches(const SolveOptions& options);
   bool judges() const override { return true; }
-  /// What to say where points have gone beyond it; none where none has.
-  std::vector<std::string> warnings(const RunHistory& history) const override;
+  void conclude(const RunHistory& history) const override;
 
  protected:
   std::vector<Overstretched> samples(const Instant& now) const override;
@@ -50,14 +48,8 @@ class StretchRecorder : public TableRecorder<Overstretched> {
 
   std::vector<Limits> limits_;  ///< of every material
   double cell_volume_;          ///< [m3]
+  bool accepts_torn_;           ///< the recipe does, of functions that a body can tear off
   bool bears_gaps_;             ///< points apart are said at the end, and do not end the run
 };
-
-/// Whether the recipe insists on a body that tears.
-bool accepts_torn_body(const SolveOptions& options);
-
-/// What is kept with the results of a run that went on though its body may have parted, since the recipe insists on it;
-/// nothing where none did.
-Facts torn_body_accepted(const SolveOptions& options, const RunHistory& history);
 
 }  // namespace talus::solver

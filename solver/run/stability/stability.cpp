@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/findings.hpp"
 #include "solver/run/stability/trial_settings.hpp"
 #include "solver/run/stability/weaken.hpp"
 #include "solver/scene/make_scene.hpp"
@@ -185,7 +186,8 @@ Failure StabilitySearch::fail(double factor) {
     advance_to(*solver, begun + failure.time);
     end = solver->energies().kinetic;
   } catch (const NumericalError& error) {
-    log_warning(fmt::format("the mass could not be followed as it fails, and no map shows it: {}", error.what()));
+    warn("failure-not-followed",
+         fmt::format("the mass could not be followed as it fails, and no map shows it: {}", error.what()));
     return failure;
   }
   failure.moves = end > growing * half;

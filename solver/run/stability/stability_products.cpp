@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/findings.hpp"
 #include "solver/run/products.hpp"
 #include "solver/run/recorders/history.hpp"
 #include "solver/run/thickness.hpp"
@@ -88,25 +89,26 @@ std::vector<std::string> stability_lines(const Stability& found, const CriticalM
   return lines;
 }
 
-std::vector<std::string> stability_warnings(const Stability& found, const CriticalMass& mass) {
-  std::vector<std::string> warnings;
+void warn_of_stability(const Stability& found, const CriticalMass& mass) {
   const FactorBracket& f = found.factor;
   if (!(f.low > 0))
-    warnings.push_back(
-        fmt::format("no factor of safety: the ground finds no equilibrium even with its strength "
-                    "times {:.3g}. Look for loose points at a rim, or for ground without a wall beside it",
-                    1 / f.high));
+    warn("no-equilibrium",
+         fmt::format("no factor of safety: the ground finds no equilibrium even with its strength "
+                     "times {:.3g}. Look for loose points at a rim, or for ground without a wall beside it",
+                     1 / f.high),
+         {{"largest_factor_tried", f.high, "1"}});
   if (!std::isfinite(f.high))
-    warnings.push_back(
-        fmt::format("no factor of safety: the ground rests even with its strength over {:.4g}. It is "
-                    "level, or held by what has no strength to divide",
-                    f.low));
+    warn("no-failure",
+         fmt::format("no factor of safety: the ground rests even with its strength over {:.4g}. It is "
+                     "level, or held by what has no strength to divide",
+                     f.low),
+         {{"largest_factor_tried", f.low, "1"}});
   if (mass.share > nearly_all)
-    warnings.push_back(
-        fmt::format("{:.0f} % of the ground fails at once: the scene ends where the slide may not. Take "
-                    "in more ground, unless all of it lies on a weak bed",
-                    100 * mass.share));
-  return warnings;
+    warn("all-ground-fails",
+         fmt::format("{:.0f} % of the ground fails at once: the scene ends where the slide may not. Take "
+                     "in more ground, unless all of it lies on a weak bed",
+                     100 * mass.share),
+         {{"share", mass.share, "1"}});
 }
 
 std::vector<std::pair<std::string, std::string>> stability_facts(const Stability& found, const CriticalMass& mass) {

@@ -28,8 +28,8 @@ CriticalMass critical_mass(const Scene& scene, const SolveOptions& options, cons
 
 /// The lines for the log: factor, bracket, mass.
 std::vector<std::string> stability_lines(const Stability& found, const CriticalMass& mass);
-/// What does not hold as it stands, for the log: no bracket, no motion, a mass that is no part of the ground.
-std::vector<std::string> stability_warnings(const Stability& found, const CriticalMass& mass);
+/// Warns of what does not hold as it stands: no bracket, no motion, a mass that is no part of the ground.
+void warn_of_stability(const Stability& found, const CriticalMass& mass);
 /// The outcome as name and value, for run.h5 and *.used.toml.
 std::vector<std::pair<std::string, std::string>> stability_facts(const Stability& found, const CriticalMass& mass);
 /// The text of stability.json: factor with bracket, trials, mass; lengths in m, volumes in m3.

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "solver/plan/warnings.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/run/stability/stability_products.hpp"
@@ -34,23 +34,26 @@ RunSummary summary_of_search(const StageContext& context, const SolveOptions& op
 
 }  // namespace
 
-Facts find_stability(StageContext& context, const SolveOptions& options, const AnyDevice& device, const Domain& domain,
-                     const Facts& facts) {
+Facts find_stability(StageContext& context, const SolveOptions& options, const AnyDevice& device,
+                     const Domain& domain) {
+  const Findings findings("solve");
   StabilitySearch search(domain, options, device);
   log_info(
       fmt::format("factor of safety: {} material points; tan(friction) and cohesion are divided until no "
                   "equilibrium is left",
                   search.scene().points.size()));
-  say_warnings_of_domain(domain);
+  add_findings(domain.findings);
   if (context.check_only) return {};
   const auto begun = std::chrono::steady_clock::now();
   const Stability found = search.run();
   const CriticalMass mass = critical_mass(search.scene(), search.options(), found.failure);
   for (const std::string& line : stability_lines(found, mass)) log_info(line);
-  for (const std::string& line : stability_warnings(found, mass)) log_warning(line);
+  warn_of_stability(found, mass);
   const Facts outcome = stability_facts(found, mass), id{{run_id, new_run_id()}};
   RunSummary summary =
-      summary_of_search(context, options, device, {domain.provenance, id, made_by(context, options, facts), outcome});
+      summary_of_search(context, options, device, {domain.provenance, id, made_by(context, options), outcome});
+  summary.places = domain.obstacles;
+  summary.findings = findings_so_far();
   summary.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   const auto run = RunPaths(context.out).run, json = context.out / "stability.json";
   write_stability_run(run, domain, search, mass, summary, device);

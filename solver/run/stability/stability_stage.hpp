@@ -12,9 +12,7 @@
 namespace talus::solver {
 
 /// This function finds the factor of safety in place of a run in time (T40), and writes run.h5 and stability.json.
-/// `facts` are what is insisted on. It adds to the context's results and returns the facts for the used recipe, none
-/// with --check.
-Facts find_stability(StageContext& context, const SolveOptions& options, const AnyDevice& device, const Domain& domain,
-                     const Facts& facts);
+/// It adds to the context's results and returns the facts for the used recipe, none with --check.
+Facts find_stability(StageContext& context, const SolveOptions& options, const AnyDevice& device, const Domain& domain);
 
 }  // namespace talus::solver

@@ -8,6 +8,7 @@
 #include "tests/common/damage.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
+#include "tests/common/findings.hpp"
 
 namespace talus {
 namespace {
@@ -23,7 +24,7 @@ void expect_same(const EnsembleCounts& a, const EnsembleCounts& b) {
   EXPECT_EQ(a.deposit, b.deposit);
   EXPECT_EQ(a.release, b.release);
   EXPECT_EQ(a.failures, b.failures);
-  EXPECT_EQ(a.warnings, b.warnings);
+  EXPECT_EQ(a.findings, b.findings);
   test::expect_same_maps(a, b);
   for (std::size_t k = 0; k < a.results.size(); ++k)
     for (const ResultNumber& number : result_numbers) {
@@ -189,21 +190,24 @@ TEST(CountsFile, with_changed_bytes_is_refused_by_its_seal) {
   }
 }
 
-TEST(CountsFile, keeps_what_members_warn_of_and_parts_add_it_up) {
+TEST(CountsFile, keeps_what_members_found_and_parts_add_it_up) {
   const test::Scratch scratch;
   const MemberTable table = test::ensemble_table(30);
   const MemberRange ranges[] = {{20, 30}, {0, 9}};
   std::vector<EnsembleCounts> parts;
   for (const MemberRange& range : ranges) {
     EnsembleCounts part = test::part_of_ensemble(table, range);
-    part.warnings = {{range.first + 1, "packed"}, {range.first + 1, "fast"}, {range.first + 3, "packed"}};
+    part.findings = {test::finding(Severity::warning, "coarse-grid", "coarse")};
+    for (const auto& [member, name] : {std::pair{3, "packed"}, {1, "packed"}, {1, "fast"}})
+      part.add_finding(range.first + member, test::finding(Severity::warning, name, "words"));
     write_counts(scratch / "counts.h5", part);
     parts.push_back(read_counts(scratch / "counts.h5"));
     expect_same(parts.back(), part);
   }
-  const std::vector<MemberWords> expected{{1, "packed"},  {1, "fast"},  {3, "packed"},
-                                          {21, "packed"}, {21, "fast"}, {23, "packed"}};
-  EXPECT_EQ(merged(std::move(parts), {"counts.20-30.h5", "counts.0-9.h5"}).warnings, expected);
+  std::string all;
+  for (const Finding& finding : merged(std::move(parts), {"counts.20-30.h5", "counts.0-9.h5"}).findings)
+    all += finding.name + " " + std::to_string(finding.member) + ", ";
+  EXPECT_EQ(all, "coarse-grid -1, packed 1, fast 1, packed 3, packed 21, fast 21, packed 23, ");
 }
 
 TEST(CountsFile, with_counts_that_cannot_be_is_refused) {
@@ -219,7 +223,7 @@ TEST(CountsFile, with_counts_that_cannot_be_is_refused) {
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.maps[1].reached[200] = 5; }), "") << "more than counted";
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.failures[0].member = 99; }), "") << "no such member";
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.failures.clear(); }), "") << "a failure without words";
-  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.warnings = {{6, "of no member"}}; }), "");
+  EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.add_finding(6, {}); }), "");
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.flow[0].clear(); }), "") << "counted, without a footprint";
   EXPECT_NE(fault_of_changed([](EnsembleCounts& c) { c.flow[0] = {10, 5}; }), "") << "not of this grid";
 }

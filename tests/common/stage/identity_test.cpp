@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/stage/acceptance.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus {
@@ -58,7 +58,7 @@ struct JudgeMaker : testing::Test {
 TEST_F(JudgeMaker, takes_a_file_of_the_same_recipe_without_a_word) {
   made.mark = recipe_mark(recipe, "solve");
   testing::internal::CaptureStderr();
-  EXPECT_TRUE(judge_maker(recipe, made).empty());
+  EXPECT_FALSE(judge_maker(recipe, made));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
@@ -72,20 +72,20 @@ TEST_F(JudgeMaker, refuses_a_file_of_another_recipe_and_names_both) {
 
 TEST_F(JudgeMaker, takes_what_the_recipe_names_and_keeps_that) {
   made.named = true;
-  const Facts facts = judge_maker(recipe, made);
-  ASSERT_EQ(accepted_in(facts).size(), 1u);
-  EXPECT_EQ(accepted_in(facts)[0].first, "another-recipe");
+  const auto found = test::findings_of([&] { EXPECT_TRUE(judge_maker(recipe, made)); });
+  EXPECT_TRUE(is_accepted(found, "another-recipe"));
+  EXPECT_EQ(found.at(0).accepted_by, "run in [postprocess]");
 }
 
 TEST_F(JudgeMaker, a_recipe_without_the_table_cannot_tell) {
   made.table = "preprocess";
-  EXPECT_TRUE(judge_maker(recipe, made).empty());
+  EXPECT_FALSE(judge_maker(recipe, made));
 }
 
 TEST_F(JudgeMaker, says_that_nobody_can_tell_of_a_file_without_a_mark) {
   made.mark = "";
   testing::internal::CaptureStderr();
-  EXPECT_TRUE(judge_maker(recipe, made).empty());
+  EXPECT_FALSE(judge_maker(recipe, made));
   EXPECT_NE(testing::internal::GetCapturedStderr().find("out/run.h5: it does not say which recipe made it"),
             std::string::npos);
 }

@@ -18,6 +18,7 @@
 #include "postprocess/ensemble/sampling_error.hpp"
 #include "postprocess/postprocess.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -331,19 +332,21 @@ TEST_F(EnsembleProducts, classify_hazard_by_the_matrix_of_the_recipe) {
 TEST_F(EnsembleProducts, say_what_was_insisted_on_in_maps_and_with_warnings_on_the_page) {
   write_members();
   EnsembleCounts counts = test::part_of_ensemble(table_, {0, 40});
-  counts.provenance = {{"accepted.false-lengths", "a metre is 1.3 m"},
-                       {"accepted.weight-strain", "strains by 0.6"},
-                       {"warning.coarse_grid", "the grid is coarse"}};
-  counts.warnings = {{1, "packed"}, {1, "fast"}, {7, "packed"}};
+  counts.findings = {test::finding(Severity::refusal, "false-lengths", "a metre is 1.3 m"),
+                     test::finding(Severity::warning, "coarse-grid", "the grid is coarse")};
+  counts.add_finding(1, test::finding(Severity::refusal, "weight-strain", "strains by 0.6"));
+  for (const auto& [member, words] : {std::pair{1, "packed"}, {1, "fast"}, {7, "packed"}})
+    counts.add_finding(member, test::finding(Severity::warning, words, words));
   write_counts(out_ / "counts.h5", counts);
   run_it();
   const std::unique_ptr<GDALDataset> map(
       GDALDataset::Open((out_ / "probability" / "peak_thickness_q05.tif").string().c_str()));
   ASSERT_TRUE(map);
-  EXPECT_STREQ(map->GetMetadataItem("ACCEPTED"), "false-lengths: a metre is 1.3 m; weight-strain: strains by 0.6");
+  EXPECT_STREQ(map->GetMetadataItem("ACCEPTED"),
+               "false-lengths: a metre is 1.3 m; weight-strain: in member 1, and maybe in others: strains by 0.6");
   std::ifstream page(out_ / "ensemble.html");
   const std::string text(std::istreambuf_iterator<char>(page), {});
-  EXPECT_NE(text.find("\"weight-strain\",\"strains by 0.6\""), std::string::npos);
+  EXPECT_NE(text.find("\"weight-strain\",\"in member 1, and maybe in others: strains by 0.6\""), std::string::npos);
   EXPECT_NE(text.find("\"warnings\":[\"the grid is coarse\"]"), std::string::npos);
   EXPECT_NE(text.find("[\"member 1\",\"packed\"],[\"member 1\",\"fast\"],[\"member 7\",\"packed\"]"),
             std::string::npos);

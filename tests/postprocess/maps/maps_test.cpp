@@ -10,6 +10,7 @@
 #include "postprocess/maps/cf_projection.hpp"
 #include "postprocess/maps/geotiff.hpp"
 #include "postprocess/maps/netcdf.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -65,7 +66,7 @@ TEST_F(MapFiles, geotiffs_keep_the_volume_and_say_what_they_are) {
 TEST_F(MapFiles, say_what_the_analyst_insisted_on) {
   TALUS_NEED_TOOL("command -v gdalinfo", "gdal-bin");
   auto run = run_;
-  run.summary.provenance = {{"accepted.swapped-surveys", "what rose lies higher"}};
+  run.summary.findings = {test::finding(Severity::refusal, "swapped-surveys", "what rose lies higher")};
   for (const auto& file : write_geotiffs(scratch_.folder(), run)) {
     const auto info = output_of("gdalinfo '" + file.string() + "'");
     EXPECT_NE(info.find("ACCEPTED=swapped-surveys: what rose lies higher"), std::string::npos) << info;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "postprocess/score/contingency.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -129,12 +130,18 @@ TEST(Score, says_of_the_release_what_preprocess_said) {
   EXPECT_EQ(json.at("max_release_thickness_slope_normal_m"), 14.88);
 }
 
-TEST(Score, names_what_the_analyst_insisted_on) {
+TEST(Score, has_the_findings_of_all_stages) {
   auto run = small_run();
-  EXPECT_FALSE(json_of(run, {}).contains("accepted.swapped-surveys"));
-  run.summary.provenance = {{"scene", "small"}, {"accepted.swapped-surveys", "what rose lies higher"}};
-  EXPECT_EQ(json_of(run, {}).at("accepted.swapped-surveys"), "what rose lies higher");
-  EXPECT_NE(to_table(make_score(run, {}, {})).find("Accepted by the analyst"), std::string::npos);
+  EXPECT_TRUE(json_of(run, {}).at("findings").empty());
+  run.summary.findings = {test::finding(Severity::refusal, "swapped-surveys", "what rose lies higher"),
+                          {Severity::warning, "coarse-grid", "the grid is coarse", {{"layers", 2, "1"}}, "preprocess"}};
+  const auto found = json_of(run, {}).at("findings");
+  EXPECT_EQ(found.at(0).at("accepted_by"), "accept in [preprocess]");
+  EXPECT_EQ(found.at(1).at("severity"), "warning");
+  EXPECT_EQ(found.at(1).at("numbers").at("layers").at("value"), 2);
+  const std::string table = to_table(make_score(run, {}, {}));
+  EXPECT_NE(table.find("Refused and accepted in [preprocess], \"swapped-surveys\": what rose"), std::string::npos)
+      << table;
 }
 
 TEST(Score, measures_runout_along_the_thalweg) {

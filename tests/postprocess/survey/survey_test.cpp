@@ -14,6 +14,7 @@
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/survey/found_survey.hpp"
 #include "postprocess/survey/order.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -312,12 +313,13 @@ TEST_F(SurveyTest, refuses_to_score_when_much_changed_outside_the_slide) {
   EXPECT_TRUE(lacks_error(out));
   EXPECT_EQ(found.id, "d1");
   EXPECT_EQ(found.recipe_mark, "5e");
-  Acceptance none("postprocess", {}), insisted("postprocess", {"change-outside-slide"});
-  const std::string fault = test::fault_of<DataError>([&] { judge_outside(found, out, none); });
+  const auto judged = [&](std::vector<std::string> accept) {
+    return test::findings_of([&] { judge_outside(found, out); }, std::move(accept), "postprocess");
+  };
+  const std::string fault = test::fault_of<DataError>([&] { judged({}); });
   EXPECT_NE(fault.find("9,059 m3 rose"), std::string::npos) << fault;
   EXPECT_NE(fault.find("accept = [\"change-outside-slide\"] in [postprocess]"), std::string::npos) << fault;
-  judge_outside(found, out, insisted);
-  EXPECT_EQ(accepted_in(insisted.facts()).at(0).first, "change-outside-slide");
+  EXPECT_TRUE(is_accepted(judged({"change-outside-slide"}), "change-outside-slide"));
   std::ofstream(out / "survey" / "survey.json") << "{\"error\": ";
   EXPECT_THROW(read_found_survey(out), DataError);
 }
@@ -332,14 +334,16 @@ TEST_F(SurveyTest, refuses_a_change_that_carries_mass_uphill) {
   survey.measured = block(survey.grid, 3, 7, 10, 20, -6.0);
   const auto risen = block(survey.grid, 25, 35, 10, 20, 2.4);
   for (std::size_t i = 0; i < risen.size(); ++i) survey.measured[i] += risen[i];
-  Acceptance none("postprocess", {}), insisted("postprocess", {"swapped-surveys"});
-  judge_order(survey, run.maps, none);
+  const auto judged = [&](std::vector<std::string> accept) {
+    return test::findings_of([&] { judge_order(survey, run.maps); }, std::move(accept), "postprocess");
+  };
+  EXPECT_TRUE(judged({}).empty());
   for (double& change : survey.measured) change = -change;
-  const std::string fault = test::fault_of<DataError>([&] { judge_order(survey, run.maps, none); });
+  const std::string fault = test::fault_of<DataError>([&] { judged({}); });
   EXPECT_NE(fault.find("accept = [\"swapped-surveys\"] in [postprocess]"), std::string::npos) << fault;
-  judge_order(survey, run.maps, insisted);
+  EXPECT_TRUE(is_accepted(judged({"swapped-surveys"}), "swapped-surveys"));
   survey.deposit_is_change = false;
-  judge_order(survey, run.maps, none);
+  EXPECT_TRUE(judged({}).empty());
 }
 
 }  // namespace

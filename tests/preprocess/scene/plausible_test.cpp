@@ -4,6 +4,7 @@
 #include "common/gis/crs.hpp"
 #include "data_samples/terrains.hpp"
 #include "preprocess/particles/coarseness.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
@@ -45,9 +46,8 @@ TEST(plausible, surveys_in_the_wrong_order_are_refused_and_accepted_by_name) {
   EXPECT_NE(valley.fault(), "") << "another name is no acceptance";
   valley.options.accept = {"swapped-surveys"};
   const Prepared prepared = prepare(valley.options, Points::counted);
-  ASSERT_EQ(prepared.accepted.size(), 1u);
-  EXPECT_EQ(prepared.accepted[0].first, "accepted.swapped-surveys");
-  EXPECT_NE(prepared.accepted[0].second.find("before.tif"), std::string::npos);
+  ASSERT_TRUE(is_accepted(prepared.domain.findings, "swapped-surveys"));
+  EXPECT_NE(accepted_line(prepared.domain.findings).find("before.tif"), std::string::npos);
 }
 
 TEST(plausible, all_that_is_implausible_is_said_at_once) {
@@ -117,17 +117,19 @@ TEST(plausible, a_release_of_few_cells_is_warned_of_with_numbers_that_help) {
       return std::abs(x - 500200) < 30 && std::abs(y - 5100200) < 30 ? 6.0 : 0.0;
     });
   };
-  const auto coarse = too_coarse(release(10), 3, 288, {});
-  ASSERT_TRUE(coarse.has_value());
-  EXPECT_NE(coarse->find("6 cells of 10 m across"), std::string::npos) << *coarse;
-  EXPECT_NE(coarse->find("put spacing_m = 7.5 into"), std::string::npos) << *coarse;
-  EXPECT_FALSE(too_coarse(release(5), 3, 2304, {}).has_value()) << "finer than it asks for";
+  const auto said = [](const Raster& thickness, double layers, std::size_t points, const GridOptions& grid) {
+    const auto found = test::messages_of([&] { warn_of_coarseness(thickness, layers, points, grid); });
+    return found.empty() ? "" : found.at(0);
+  };
+  const std::string coarse = said(release(10), 3, 288, {});
+  EXPECT_NE(coarse.find("6 cells of 10 m across"), std::string::npos) << coarse;
+  EXPECT_NE(coarse.find("put spacing_m = 7.5 into"), std::string::npos) << coarse;
+  EXPECT_EQ(said(release(5), 3, 2304, {}), "") << "finer than it asks for";
   GridOptions given;
   given.layer_height = 5;
-  const auto thin = too_coarse(release(5), 5, 1000, given);
-  ASSERT_TRUE(thin.has_value()) << "1.2 layers over the thickness";
-  EXPECT_NE(thin->find("put layer_height_m = 3 into"), std::string::npos) << *thin;
-  EXPECT_FALSE(too_coarse(raster_of(grid_of(9, 9, 10), [](double, double) { return 0.0; }), 3, 0, {}).has_value());
+  const std::string thin = said(release(5), 5, 1000, given);
+  EXPECT_NE(thin.find("put layer_height_m = 3 into"), std::string::npos) << "1.2 layers over the thickness: " << thin;
+  EXPECT_EQ(said(raster_of(grid_of(9, 9, 10), [](double, double) { return 0.0; }), 3, 0, {}), "");
 }
 
 TEST(plausible, accept_is_read_as_written_and_knows_its_names) {

@@ -8,6 +8,7 @@
 #include "solver/ensemble/keep_runs.hpp"
 #include "solver/run/run_loop.hpp"
 #include "tests/common/ensemble/same_maps.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 
 namespace talus::solver::testing {
@@ -40,7 +41,7 @@ class EnsembleStage : public ::testing::Test {
   Facts run(const EnsembleFlags& flags) {
     StageContext context = this->context();
     const Domain domain = read_domain(out() / "domain.vdb");
-    return run_ensemble(context, flags, std::make_shared<const Domain>(domain), options_of(context.recipe, out()), {});
+    return run_ensemble(context, flags, std::make_shared<const Domain>(domain), options_of(context.recipe, out()));
   }
 
   test::Scratch scratch_;
@@ -69,11 +70,9 @@ TEST_F(EnsembleStage, writes_parts_that_add_up_to_the_whole) {
 }
 
 TEST_F(EnsembleStage, says_what_the_domain_was_warned_of_where_it_is_planned) {
-  domain_.provenance.emplace_back("warning.coarse_grid", "the grid is coarse");
+  domain_.findings = {test::finding(Severity::warning, "coarse-grid", "the grid is coarse")};
   write_domain(out() / "domain.vdb", domain_);
-  const QuietThread quiet;
-  run({.plan = true});
-  EXPECT_EQ(quiet.warnings(), std::vector<std::string>{"the grid is coarse"});
+  EXPECT_EQ(test::findings_of([&] { run({.plan = true}); }), domain_.findings);
 }
 
 TEST_F(EnsembleStage, does_not_compute_a_finished_part_again) {

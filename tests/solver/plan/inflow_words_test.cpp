@@ -4,6 +4,7 @@
 #include "solver/plan/inflow_words.hpp"
 
 #include "solver/plan/energy_line.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -33,14 +34,14 @@ TEST(InflowWords, tell_the_largest_flow) {
   EXPECT_EQ(inflow_words(scene.inflow.summaries.at(0)),
             "inflow-1: 1200 m3 from 0 to 20 s; at its largest 60 m3/s over 20 m of the line, 0.612 m deep, at 5 m/s "
             "(Froude number 2.1)");
-  EXPECT_TRUE(inflow_warnings(begin_scene(d, letting_in(60)), letting_in(60)).empty());
+  EXPECT_TRUE(test::messages_of([&] { warn_of_inflows(begin_scene(d, letting_in(60)), letting_in(60)); }).empty());
 }
 
 TEST(InflowWords, warn_of_thin_flows_and_of_what_comes_too_late) {
   const Domain d = tilted();
   SolveOptions o = letting_in(10);
   o.end_time = 15;
-  const std::vector<std::string> lines = inflow_warnings(begin_scene(d, o), o);
+  const auto lines = test::messages_of([&] { warn_of_inflows(begin_scene(d, o), o); });
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_NE(lines[0].find("the run ends at 15 s, before 50 m3 of its hydrograph"), std::string::npos) << lines[0];
   EXPECT_NE(lines[1].find("it enters 0.102 m deep at most, less than half a layer of 0.5 m"), std::string::npos);

@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What hardly any slide does is refused with its numbers, unless the recipe insists on it by name.
-#include "solver/plan/plausible.hpp"
+#include "solver/plan/checks.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "common/error.hpp"
+#include "tests/common/findings.hpp"
+#include "tests/common/scratch.hpp"
 #include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -26,13 +28,8 @@ Domain plausible_block(double thickness) {
 
 /// The refusal of a scene; empty where none is.
 std::string refusal_of(const Domain& domain, const SolveOptions& o, std::vector<std::string> accept = {}) {
-  Acceptance acceptance("solve", std::move(accept));
-  try {
-    judge_scene(plausibility_of(*drafted(domain, o)), o, acceptance);
-  } catch (const DataError& error) {
-    return error.what();
-  }
-  return "";
+  return test::fault_of<DataError>(
+      [&] { test::findings_of([&] { refuse_implausible(*drafted(domain, o)); }, std::move(accept)); });
 }
 
 void expect_all_of(const std::string& text, const std::vector<std::string>& words) {
@@ -52,11 +49,13 @@ TEST(Plausible, a_mass_that_its_weight_squashes_is_refused_with_its_numbers) {
   const std::string refusal = refusal_of(plausible_block(4), o);
   expect_all_of(refusal,
                 {"4 m", "7.85e+04 Pa", "youngs_modulus_Pa = 1e+04", "accept = [\"weight-strain\"] in [solve]"});
-  Acceptance acceptance("solve", {"weight-strain", "slow-waves"});
-  const Domain domain = plausible_block(4);
-  judge_scene(plausibility_of(*drafted(domain, o)), o, acceptance);
-  EXPECT_EQ(acceptance.facts().front().first, "accepted.weight-strain");
-  EXPECT_NE(acceptance.facts().front().second.find("7.85e+04 Pa"), std::string::npos);
+  o.accept = {"weight-strain", "slow-waves"};
+  const auto made = plan(plausible_block(4), o);
+  const auto found = std::ranges::find(made->findings, "weight-strain", &Finding::name);
+  ASSERT_NE(found, made->findings.end());
+  EXPECT_EQ(found->severity, Severity::refusal);
+  EXPECT_NE(found->message.find("7.85e+04 Pa"), std::string::npos);
+  EXPECT_NEAR(found->numbers.at(1).value, 2000 * 9.81 * 4, 1);
 }
 
 TEST(Plausible, the_weight_is_that_of_the_columns_with_the_material) {
@@ -67,11 +66,14 @@ TEST(Plausible, the_weight_is_that_of_the_columns_with_the_material) {
   Domain d = plausible_block(4);
   d.release_names.push_back("soft");
   std::fill(d.points.release.begin(), d.points.release.begin() + 8, 1);
-  const ScenePlausibility found = plausibility_of(*drafted(d, o));
-  EXPECT_EQ(found.weighed_modulus, 1e4);
-  EXPECT_LT(found.weight, 2000 * 9.81 * 4);
-  EXPECT_GT(found.weight, 1000 * 9.81 * 4);
-  EXPECT_NEAR(found.thickness, 4, 1e-12);
+  const auto found = test::findings_of([&] { refuse_implausible(*drafted(d, o)); }, {"weight-strain", "slow-waves"});
+  const auto number = [&](const char* name) {
+    return std::ranges::find(found.at(0).numbers, name, &FindingNumber::name)->value;
+  };
+  EXPECT_EQ(number("youngs_modulus"), 1e4);
+  EXPECT_LT(number("pressure"), 2000 * 9.81 * 4);
+  EXPECT_GT(number("pressure"), 1000 * 9.81 * 4);
+  EXPECT_NEAR(number("thickness"), 4, 1e-12);
 }
 
 TEST(Plausible, waves_beyond_those_of_any_solid_are_refused) {

@@ -9,12 +9,12 @@
 #include <filesystem>
 
 #include "common/error.hpp"
-#include "solver/plan/plausible.hpp"
+#include "solver/plan/checks.hpp"
 #include "solver/plan/stiffness.hpp"
-#include "solver/plan/warnings.hpp"
 #include "solver/run/recorders/history.hpp"
 #include "solver/run/schedule.hpp"
 #include "solver/run/simulation.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"
@@ -37,9 +37,11 @@ struct ShakenSlab {
   }
   Scene scene() const { return make_scene(domain, options); }
   std::string refusal(std::vector<std::string> accept = {}) const {
-    Acceptance acceptance("solve", std::move(accept));
     return test::fault_of<DataError>(
-        [&] { judge_scene(plausibility_of(*drafted(domain, options)), options, acceptance); });
+        [&] { test::findings_of([&] { refuse_implausible(*drafted(domain, options)); }, std::move(accept)); });
+  }
+  std::vector<std::string> warnings() const {
+    return test::messages_of([&] { warn_of_shaking(scene().shaking, options); });
   }
 };
 
@@ -49,9 +51,9 @@ TEST(ShakingWords, name_samples_times_and_largest_numbers) {
 
 TEST(ShakingWords, warn_of_ground_that_does_not_come_to_rest) {
   ShakenSlab slab;
-  EXPECT_TRUE(shaking_warnings(slab.scene().shaking, slab.options).empty());
+  EXPECT_TRUE(slab.warnings().empty());
   slab.options.shaking.file = slab.scratch.write("drift.csv", "time_s east\n0 0\n0.5 4\n1 0\n1.5 -3.6\n2 0\n");
-  const std::vector<std::string> lines = warnings(begun(slab.domain, slab.options));
+  const auto lines = test::messages_of([&] { warn_of_plan(begun(slab.domain, slab.options)); });
   ASSERT_FALSE(lines.empty());
   EXPECT_EQ(
       lines.back().find("[solve.shaking] at the end of the accelerogram the ground still moves at 0.2 m/s, 10 % of"),
@@ -62,7 +64,7 @@ TEST(ShakingWords, warn_of_ground_that_does_not_come_to_rest) {
 TEST(ShakingWords, warn_of_a_run_that_ends_before_the_record) {
   ShakenSlab slab;
   slab.options.end_time = 4.5;
-  const std::vector<std::string> lines = shaking_warnings(slab.scene().shaking, slab.options);
+  const std::vector<std::string> lines = slab.warnings();
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines.front(),
             "[solve.shaking] the run ends at 4.5 s and the accelerogram at 5 s: its last 0.5 s do not act. Give "

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is said of a recipe whose numbers do not bear out what it asks.
-#include "solver/plan/warnings.hpp"
+#include "solver/plan/checks.hpp"
 
 #include <string>
 #include <vector>
@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/options/solve.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -28,6 +29,10 @@ SolveOptions mass_on_bed(double mass, double bed) {
   o.material.friction_angle = mass;
   o.base.friction_angle = bed;
   return o;
+}
+
+std::vector<std::string> warnings(const Plan& plan) {
+  return test::messages_of([&] { warn_of_plan(plan); });
 }
 
 bool says(const std::vector<std::string>& lines, const std::string& words) {

@@ -7,6 +7,7 @@
 
 #include "common/run/run_file.hpp"
 #include "common/stage/console.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 
 namespace talus::solver::testing {
@@ -28,7 +29,7 @@ class RunStage : public ::testing::Test {
   StageContext context() const { return {recipe::Recipe(recipe_file_), out(), false, "test", {}}; }
   SolveOptions options() const { return options_of(recipe::Recipe(recipe_file_), out()); }
   Facts run(StageContext& context, const RunFlags& flags, const SolveOptions& options) {
-    return run_in_time(context, flags, plan(domain_, options), make_device(On::cpu), {});
+    return run_in_time(context, flags, plan(domain_, options), make_device(On::cpu));
   }
 
   test::Scratch scratch_;
@@ -58,10 +59,8 @@ TEST_F(RunStage, warns_of_what_is_accepted_for_nothing_unless_variations_follow)
   SolveOptions insisting = options();
   insisting.accept = {"slow-waves", torn_body};
   const auto unmet = [&](bool is_varied) {
-    const QuietThread quiet;
-    run(context, {.is_varied = is_varied}, insisting);
-    return std::count_if(quiet.warnings().begin(), quiet.warnings().end(),
-                         [](const std::string& words) { return words.starts_with("[solve]: accept = "); });
+    const auto found = test::findings_of([&] { run(context, {.is_varied = is_varied}, insisting); });
+    return std::ranges::count(found, "unused-accept", &Finding::name);
   };
   EXPECT_EQ(unmet(false), 2);
   EXPECT_EQ(unmet(true), 0) << "runs of a budget may meet it";

@@ -44,10 +44,16 @@ struct EndedRun {
   }
 };
 
-bool mentions(const std::vector<std::string>& lines, const std::string& words) {
-  for (const std::string& line : lines)
-    if (line.find(words) != std::string::npos) return true;
+bool mentions(const std::vector<Finding>& found, const std::string& words) {
+  for (const Finding& one : found)
+    if (one.message.find(words) != std::string::npos) return true;
   return false;
+}
+
+std::string said(const RunSanity& sanity) {
+  ::testing::internal::CaptureStderr();
+  say_sanity(sanity);
+  return ::testing::internal::GetCapturedStderr();
 }
 
 TEST(Sanity, of_an_ordinary_run_is_sane) {
@@ -62,7 +68,7 @@ TEST(Sanity, of_an_ordinary_run_is_sane) {
   const double top = (300 - 22.5) / 3 + 4 * 3.0 / 4;
   EXPECT_NEAR(found.speed_bound, std::sqrt(2 * 9.81 * top), 0.1) << "ground between nodes is a spline";
   EXPECT_EQ(found.words, "sane");
-  EXPECT_NE(sanity_line(found).find("fastest point 31.0 m/s"), std::string::npos);
+  EXPECT_NE(said(found).find("fastest point 31.0 m/s"), std::string::npos);
 }
 
 TEST(Sanity, says_what_is_beyond_its_bound_with_the_numbers) {
@@ -78,6 +84,8 @@ TEST(Sanity, says_what_is_beyond_its_bound_with_the_numbers) {
   EXPECT_TRUE(mentions(faults, "the energy rose by 0.1 of")) << "2 J of the 10 J held and the 10 J fallen";
   EXPECT_TRUE(mentions(faults, "volume is off by"));
   EXPECT_NE(found.words.find("163 m/s"), std::string::npos);
+  EXPECT_EQ(faults.back().name, "faster-than-fall");
+  EXPECT_EQ(faults.back().numbers.at(0).value, 163);
 }
 
 TEST(Sanity, says_that_the_mass_has_left) {
@@ -97,7 +105,7 @@ TEST(Sanity, bounds_neither_energy_nor_speed_where_loads_or_walls_do_work) {
   EXPECT_TRUE(std::isnan(found.energy_gain));
   EXPECT_TRUE(std::isnan(found.speed_bound));
   EXPECT_EQ(found.words, "sane");
-  EXPECT_NE(sanity_line(found).find("fall without loss unknown"), std::string::npos);
+  EXPECT_NE(said(found).find("fall without loss unknown"), std::string::npos);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/common/findings.hpp"
 #include "tests/solver/run/recorders/recorded.hpp"
 
 namespace talus::solver::testing {
@@ -74,8 +75,9 @@ TEST_P(GroundForce, is_what_bed_and_walls_were_counted_to_give) {
 
 TEST_P(GroundForce, is_not_known_where_matter_leaves) {
   std::vector<std::string> warnings;
-  const RunHistory h = recorded(sliding_block(32), stiff_block(), GetParam(), 4, 0.5,
-                                [&](const Solver&, const Scene&, const History& now) { warnings = now.warnings(); });
+  const RunHistory h = recorded(
+      sliding_block(32), stiff_block(), GetParam(), 4, 0.5,
+      [&](const Solver&, const Scene&, const History& now) { warnings = test::messages_of([&] { now.conclude(); }); });
   std::size_t unknown = 0;
   const auto &force = h.at("ground_force_x_N").values, &outflow = h.at("outflow_m3").values;
   for (std::size_t row = 1; row < force.size(); ++row) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/common/findings.hpp"
 #include "tests/solver/run/recorders/recorded.hpp"
 
 namespace talus::solver::testing {
@@ -138,8 +139,9 @@ TEST_P(Sections, say_what_may_have_left_unseen) {
   SolveOptions o = block_without_friction();
   o.sections = {{.name = "edge", .x = {62, 62}, .y = {0.5, 23.5}}, {.name = "far", .x = {30, 30}, .y = {0.5, 23.5}}};
   std::vector<std::string> warnings;
-  const RunHistory h = recorded(block_on_a_slope(), o, GetParam(), 6, 1,
-                                [&](const Solver&, const Scene&, const History& now) { warnings = now.warnings(); });
+  const RunHistory h = recorded(
+      block_on_a_slope(), o, GetParam(), 6, 1,
+      [&](const Solver&, const Scene&, const History& now) { warnings = test::messages_of([&] { now.conclude(); }); });
   const double passed = column(h, "section_edge_passed_m3").back(), unseen = column(h, "section_edge_unseen_m3").back();
   EXPECT_GT(unseen, 0);
   EXPECT_LE(passed + unseen, block_volume * (1 + 1e-9)) << "nothing twice";

@@ -9,6 +9,7 @@
 
 #include "solver/run/recorders/history.hpp"
 #include "solver/scene/make_solver.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -16,8 +17,8 @@ namespace {
 
 /// What is said of a block of a law, eight of its points stretched along x by this factor, less as much across, where
 /// the recipe bears that they part.
-std::vector<std::string> said_of(MaterialModel model, double stretch, RunHistory* rows = nullptr,
-                                 const std::vector<std::string>& accept = {torn_body}) {
+std::vector<Finding> found_of(MaterialModel model, double stretch, RunHistory* rows = nullptr,
+                              const std::vector<std::string>& accept = {torn_body}) {
   Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
   fill(d, {4, 8, 4, 8, 0, 2});
   SolveOptions o;
@@ -38,15 +39,15 @@ std::vector<std::string> said_of(MaterialModel model, double stretch, RunHistory
                   .counted = counted,
                   .solver = *solver});
   if (rows) *rows = history.rows();
-  return history.warnings();
+  return test::findings_of([&] { history.conclude(); }, accept);
 }
 
 TEST(StretchRecorder, names_the_points_that_hencky_tears_and_the_law_that_does_not) {
   RunHistory rows;
-  const auto lines = said_of(MaterialModel::hencky, 3, &rows);
-  ASSERT_EQ(lines.size(), 2u);
+  const auto lines = found_of(MaterialModel::hencky, 3, &rows);
+  ASSERT_EQ(lines.size(), 3u);
   for (const char* words : {"8 points", "factor of up to 3.", "e = 2.72", "neo-hookean"})
-    EXPECT_NE(lines[0].find(words), std::string::npos) << words << "\n" << lines[0];
+    EXPECT_NE(lines[0].message.find(words), std::string::npos) << words << "\n" << lines[0].message;
   EXPECT_EQ(rows.at("overstretched_points").values, std::vector<double>{8});
   EXPECT_NEAR(rows.at("largest_stretch").values[0], 3, 1e-12);
 }
@@ -55,46 +56,38 @@ TEST(StretchRecorder, names_the_points_that_hencky_tears_and_the_law_that_does_n
 TEST(StretchRecorder, names_the_points_of_any_elastic_body_that_lie_far_apart) {
   for (const auto model : {MaterialModel::hencky, MaterialModel::neo_hookean, MaterialModel::corotated}) {
     RunHistory rows;
-    const auto lines = said_of(model, 1.35, &rows);
-    ASSERT_EQ(lines.size(), 1u);
+    const auto lines = found_of(model, 1.35, &rows);
+    ASSERT_EQ(lines.size(), 2u);
     for (const char* words : {"8 points", "factor of up to 1.35", "0.65 of a cell", "gimp"})
-      EXPECT_NE(lines[0].find(words), std::string::npos) << words << "\n" << lines[0];
+      EXPECT_NE(lines[0].message.find(words), std::string::npos) << words << "\n" << lines[0].message;
     EXPECT_EQ(rows.at("points_apart").values, std::vector<double>{8});
-    EXPECT_TRUE(said_of(model, 1.25).empty());
+    EXPECT_TRUE(found_of(model, 1.25).empty());
   }
 }
 
 TEST(StretchRecorder, ends_a_run_whose_body_may_have_parted_unless_that_is_accepted) {
   try {
-    said_of(MaterialModel::neo_hookean, 1.35, nullptr, {});
+    found_of(MaterialModel::neo_hookean, 1.35, nullptr, {});
     FAIL() << "a torn body was borne";
   } catch (const NumericalError& error) {
     const std::string words = error.what();
     for (const char* part : {"8 points", "factor of up to 1.35", "0.65 of a cell", "gimp", "accept = [\"torn-body\"]"})
       EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
   }
-  EXPECT_TRUE(said_of(MaterialModel::neo_hookean, 1.25, nullptr, {}).empty());
+  EXPECT_TRUE(found_of(MaterialModel::neo_hookean, 1.25, nullptr, {}).empty());
 }
 
 TEST(StretchRecorder, leaves_what_was_insisted_on_with_the_results) {
-  SolveOptions o;
-  RunHistory rows;
-  said_of(MaterialModel::neo_hookean, 1.35, &rows);
-  EXPECT_TRUE(torn_body_accepted(o, rows).empty());
-  o.accept = {torn_body};
-  const Facts facts = torn_body_accepted(o, rows);
-  ASSERT_EQ(facts.size(), 1u);
-  EXPECT_EQ(facts[0].first, "accepted.torn-body");
+  const auto found = found_of(MaterialModel::neo_hookean, 1.35);
+  ASSERT_TRUE(is_accepted(found, torn_body));
   for (const char* part : {"8 points", "factor of up to 1.35", "0.65 of a cell"})
-    EXPECT_NE(facts[0].second.find(part), std::string::npos) << part << "\n" << facts[0].second;
-  said_of(MaterialModel::neo_hookean, 1.25, &rows);
-  EXPECT_TRUE(torn_body_accepted(o, rows).empty()) << "nothing was torn";
-  EXPECT_TRUE(torn_body_accepted(o, RunHistory{}).empty()) << "no elastic body";
+    EXPECT_NE(accepted_line(found).find(part), std::string::npos) << part << "\n" << accepted_line(found);
+  EXPECT_TRUE(found_of(MaterialModel::neo_hookean, 1.25).empty()) << "nothing was torn";
 }
 
 TEST(StretchRecorder, is_silent_of_what_flows) {
   RunHistory rows;
-  EXPECT_TRUE(said_of(MaterialModel::drucker_prager, 3, &rows).empty());
+  EXPECT_TRUE(found_of(MaterialModel::drucker_prager, 3, &rows).empty());
   EXPECT_EQ(rows.find("overstretched_points"), nullptr) << "other laws do not pay for it";
 }
 

@@ -5,6 +5,7 @@
 
 #include "common/run/run_file.hpp"
 #include "common/stage/console.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -27,7 +28,7 @@ class StabilityStage : public ::testing::Test {
     options_.stability.tolerance = 0.1;
   }
 
-  Facts found() { return find_stability(context_, options_, make_device(On::cpu), domain_, {}); }
+  Facts found() { return find_stability(context_, options_, make_device(On::cpu), domain_); }
 
   test::Scratch scratch_;
   Domain domain_;
@@ -36,11 +37,9 @@ class StabilityStage : public ::testing::Test {
 };
 
 TEST_F(StabilityStage, says_what_the_domain_was_warned_of_where_it_is_checked) {
-  domain_.provenance.emplace_back("warning.coarse_grid", "the grid is coarse");
+  domain_.findings = {test::finding(Severity::warning, "coarse-grid", "the grid is coarse")};
   context_.check_only = true;
-  const QuietThread quiet;
-  found();
-  EXPECT_EQ(quiet.warnings(), std::vector<std::string>{"the grid is coarse"});
+  EXPECT_EQ(test::findings_of([&] { found(); }), domain_.findings);
 }
 
 TEST_F(StabilityStage, writes_the_factor_and_the_ground_at_rest) {

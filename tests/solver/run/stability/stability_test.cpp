@@ -12,6 +12,7 @@
 #include "solver/options/stability.hpp"
 #include "solver/options/walls.hpp"
 #include "solver/run/stability/stability_products.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -54,7 +55,7 @@ TEST(Stability, of_an_infinite_slope_is_that_of_the_closed_form) {
     EXPECT_NEAR(mass.volume, 4 * 4 * 2, 1e-9) << "all of it goes";
     EXPECT_NEAR(mass.depth, 2, 1e-9);
     EXPECT_NEAR(mass.area, 4 * 4, 1e-9);
-    EXPECT_EQ(stability_warnings(found, mass).size(), 1U) << "that all of it goes";
+    EXPECT_EQ(test::messages_of([&] { warn_of_stability(found, mass); }).size(), 1U) << "that all of it goes";
   }
 }
 
@@ -67,7 +68,7 @@ TEST(Stability, level_ground_has_no_factor) {
   const Stability found = StabilitySearch(s.domain, s.options, CpuDevice::make()).run();
   EXPECT_FALSE(found.factor.closed());
   EXPECT_EQ(found.factor.low, 2);
-  const auto warnings = stability_warnings(found, {});
+  const auto warnings = test::messages_of([&] { warn_of_stability(found, {}); });
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("rests even"), std::string::npos);
 }
