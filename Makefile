@@ -156,7 +156,7 @@ validate: with-tests ## error beside tolerance, into build/validation-table.md [
 
 check-faults: with-tests ## kills, failing calls, processes in one folder, power cuts: all tables [SCENES="run slides"]
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs) talus-faults
-	@for scene in $(or $(SCENES),run ensemble budget slides); do \
+	@for scene in $(or $(SCENES),run ensemble slides); do \
 	  /usr/bin/python3 tests/faults/faults.py --full --scene $$scene --bin $(BUILD)/bin \
 	    --shim $(BUILD)/bin/talus-faults.so --work $(BUILD)/scratch/check-faults \
 	    --table $(BUILD)/faults-$$scene.md || exit 1; done

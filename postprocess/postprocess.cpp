@@ -48,9 +48,6 @@ fs::path run_file(const StageContext& context, const Options& options) {
   return options.run.empty() ? context.out / "run.h5" : options.run;
 }
 
-/// The budget of a run, which lies beside it.
-fs::path budget_file(const fs::path& run) { return BudgetPaths{run.parent_path()}.budget(); }
-
 /// What the report shows of the stages before and of the survey, where it lies beside the run.
 std::vector<fs::path> texts_beside(const fs::path& folder) {
   std::vector<fs::path> files{folder / "preprocess.used.toml", folder / "solve.used.toml",
@@ -82,7 +79,6 @@ Dependencies depends(const StageContext& context) {
                                survey.peak_thickness, survey.polygon, options.thalweg});
   inputs.insert(inputs.begin(), run);
   for (const fs::path& polygons : hazard_inputs(options)) inputs.push_back(polygons);
-  if (fs::exists(budget_file(run))) inputs.push_back(budget_file(run));
   if (options.writes("report"))
     for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
   if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
@@ -150,7 +146,6 @@ void write_results(StageContext& context, Job& job) {
   const Files files = job.options.writers.write(job);
   context.results.insert(context.results.end(), files.begin(), files.end());
   log_info("\n" + to_table(job.score));
-  if (job.budget) log_info("\n" + budget_words(*job.budget));
 }
 
 void run_single(StageContext& context, const Options& options) {
@@ -181,7 +176,6 @@ void run_single(StageContext& context, const Options& options) {
   all.insert(all.end(), findings.list().begin(), findings.list().end());
   job.thalweg = thalweg_of(job.run, job.options);
   job.hazard = hazard_of(job.run, job.options);
-  job.budget = budget_table(budget_file(job.file), {job.run, job.options, job.survey, job.thalweg});
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));

@@ -15,7 +15,6 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/budget/budget_domains.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/provenance.hpp"
@@ -56,7 +55,6 @@ void report(const Prepared& prepared) {
 /// What the command line says beyond what every stage takes.
 struct PreprocessFlags {
   bool difference = false;  // compare the surveys and stop
-  bool budget = false;      // make the domains of the error budget too
 };
 
 /// OUT/survey, where there is anything to put into it.
@@ -118,20 +116,21 @@ Dependencies depends(const StageContext& context, const PreprocessFlags& flags) 
   const EnsembleOptions ensemble = ensemble_of(context.recipe);
   if (ensemble.on()) depends.results.push_back(EnsemblePaths{context.out}.members());
   for (const auto& file : inputs_of(ensemble)) depends.inputs.push_back(file);
-  if (budget_of(context.recipe, flags.budget).make) depends.results.push_back(BudgetPaths{context.out}.domains());
   return depends;
 }
 
-/// The base scene's error, and whether every key of the ground does something.
-void look_at_ensemble(const StageContext& context, EnsemblePlan& plan, const EnsembleBase& base) {
-  if (plan.options.elevation_error.acts())
+/// The base scene's error, and whether every key of the ground does something; its layers are so high [m].
+void look_at_ensemble(const StageContext& context, EnsemblePlan& plan, const EnsembleBase& base, double layer) {
+  if (plan.options.is_budget())
+    plan_budget_domains(context.recipe, plan, base, layer);
+  else if (plan.options.elevation_error.acts())
     plan.errors.emplace(plan.options.elevation_error, base.options, base.scene, plan.options.seed);
   for (const std::string& line : as_lines(plan)) log_info(line);
   refuse_idle_keys(context.recipe, plan, base);
 }
 
-/// The [preprocess] and, where there are any, the [ensemble] and the [budget] of a recipe, as they are used.
-std::string used_tables(const recipe::Recipe& recipe, bool marked, bool budget_asked) {
+/// The [preprocess] and, where there are any, the [slides] or the [ensemble] of a recipe, as they are used.
+std::string used_tables(const recipe::Recipe& recipe, bool marked) {
   const SlideOptions slides = slides_of(recipe);
   const auto options = slides.on() ? shared_options(recipe, slides) : recipe.read<Options>("preprocess");
   const EnsembleOptions ensemble = ensemble_of(recipe);
@@ -141,36 +140,28 @@ std::string used_tables(const recipe::Recipe& recipe, bool marked, bool budget_a
     return text + "\n" + (marked ? recipe::to_used_toml(slides, "slides") : recipe::to_toml(slides, "slides", false));
   if (ensemble.on())
     text += "\n" + (marked ? recipe::to_used_toml(ensemble, "ensemble") : recipe::to_toml(ensemble, "ensemble", false));
-  if (const BudgetOptions budget = budget_of(recipe, budget_asked); budget.make)
-    text += "\n" + (marked ? recipe::to_used_toml(budget, "budget") : recipe::to_toml(budget, "budget", false));
   return text;
 }
 
 /// Many slides over one model, each with a domain of its own.
-void run_slides(StageContext& context, const PreprocessFlags& flags) {
+void run_slides(StageContext& context) {
   ensemble_of(context.recipe);  // refuses [ensemble] besides
-  if (budget_of(context.recipe, flags.budget).make)
-    throw RecipeError({"an error budget with [slides]", "it is of one slide", "Leave one of them out"});
   const SlidesMade made = make_slides(context);
   if (context.check_only) return;
-  write_used_recipe(context, stage(), used_tables(context.recipe, true, false), made.inputs, made.facts);
+  write_used_recipe(context, stage(), used_tables(context.recipe, true), made.inputs, made.facts);
   copy_largest(context, made);
 }
 
 void run(StageContext& context, const PreprocessFlags& flags) {
-  if (slides_of(context.recipe).on()) return run_slides(context, flags);
+  if (slides_of(context.recipe).on()) return run_slides(context);
   const auto options = read_options(context);
   if (flags.difference) return run_difference(context, options);
   auto ensemble = plan_ensemble(context.recipe, options);
-  const BudgetOptions budget = budget_of(context.recipe, flags.budget);
-  if (ensemble && budget.make)
-    throw RecipeError({"an error budget with [ensemble]", "members of an ensemble say by themselves how far runs go",
-                       "Leave one of them out"});
   SurveyMemory memory;
   EnsembleBase base{options, read_scene(options, &memory), memory, {}, {}, {}, {}};
   auto prepared = prepare(resolved(options), base.scene, context.check_only ? Points::counted : Points::seeded);
   report(prepared);
-  if (ensemble) look_at_ensemble(context, *ensemble, base);
+  if (ensemble) look_at_ensemble(context, *ensemble, base, prepared.domain.layer_height);
   if (context.check_only) return;
   stop_if_interrupted("writing the domain");
   const Facts inputs = checksums_of(prepared.inputs), facts = facts_of(prepared);
@@ -184,10 +175,6 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   if (!prepared.obstacles.empty())
     base.checksums = {{obstacles_checksum, fact(prepared.domain.provenance, obstacles_checksum)}};
   base.obstacles = prepared.domain.obstacles;
-  if (budget.make)
-    write_budget_domains(context, budget, base, prepared.domain);
-  else
-    remove_budget_domains({context.out});
   if (ensemble) {
     write_ensemble(context, *ensemble, base);
   } else {
@@ -197,7 +184,7 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   context.results.push_back(file);
   Facts told{{"id", fact(marks, domain_id)}};
   told.insert(told.end(), facts.begin(), facts.end());
-  write_used_recipe(context, stage(), used_tables(context.recipe, true, flags.budget), prepared.inputs, told);
+  write_used_recipe(context, stage(), used_tables(context.recipe, true), prepared.inputs, told);
   write_domain(file, prepared.domain);  // last: where it lies, everything is there
 }
 
@@ -212,10 +199,7 @@ std::string template_of_tables() {
 std::vector<Flag> flags_into(const std::shared_ptr<PreprocessFlags>& given) {
   return {{.name = "--difference",
            .help = "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop",
-           .set = [given](const std::string&) { given->difference = true; }},
-          {.name = "--budget",
-           .help = "Make the domains of the error budget too ([budget]): other cells, other errors of the survey",
-           .set = [given](const std::string&) { given->budget = true; }}};
+           .set = [given](const std::string&) { given->difference = true; }}};
 }
 
 /// The id of a domain; of level sets, which carry none, their SHA-256.
@@ -240,7 +224,7 @@ Stage stage() {
       "  talus-preprocess --template > recipe.toml       every key with its meaning and range";
   s.template_toml = template_of_tables;
   s.flags = flags_into(given);
-  s.used_toml = [given](const recipe::Recipe& recipe) { return used_tables(recipe, false, given->budget); };
+  s.used_toml = [](const recipe::Recipe& recipe) { return used_tables(recipe, false); };
   s.depends = [given](const StageContext& context) { return depends(context, *given); };
   s.id_of = id_in;
   s.run = [given](StageContext& context) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stage talus-preprocess: elevation models -> domain.vdb, survey/, obstacles.vdb, members.h5, budget/.
+// The stage talus-preprocess: elevation models -> domain.vdb, survey/, obstacles.vdb, members.h5.
 #pragma once
 
 #include "common/stage/stage.hpp"

@@ -5,23 +5,18 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "common/budget/budget.hpp"
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
 #include "common/ensemble/counts.hpp"
 #include "common/run/run_facts.hpp"
-#include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
-#include "common/stage/input_file.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/budget/budget_stage.hpp"
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/parallel/on.hpp"
@@ -42,15 +37,12 @@ const char* const examples =
     "  talus-solve recipe.toml --out out/valley --restart  # go on after Ctrl-C\n"
     "  talus-solve recipe.toml --out out/valley --resume   # go on where there is something to go on from\n"
     "  talus-solve recipe.toml --out out/valley --plan     # say what is on, how many steps, how long; write nothing\n"
-    "  talus-solve recipe.toml --out out/valley --members 0:250   # a part of an ensemble\n"
-    "  talus-solve recipe.toml --out out/valley --budget   # and runs that differ in one thing each: how sure is it?\n"
-    "  talus-solve recipe.toml --out out/valley --budget --plan   # what they take";
+    "  talus-solve recipe.toml --out out/valley --members 0:250   # a part of an ensemble";
 
 /// The arguments of the command line beyond those that every stage takes.
 struct SolveFlags {
   On on = On::automatic;
   RunFlags run;
-  bool budget = false;
   std::optional<MemberRange> members;
   int at_a_time = 0;  // 0: as the program decides
 };
@@ -77,11 +69,8 @@ std::vector<Flag> flags_into(const std::shared_ptr<SolveFlags>& given) {
            .help = "Of an ensemble, members A to B-1 alone, counted from 0; talus-postprocess adds parts up",
            .value = "A:B",
            .set = [given](const std::string& words) { given->members = member_range(words); }},
-          {.name = "--budget",
-           .help = "Make the runs of the error budget too ([budget]): how far each doubt moves the deposit",
-           .set = [given](const std::string&) { given->budget = true; }},
           {.name = "--at-a-time",
-           .help = "Of an ensemble or a budget, runs at a time (default: one a thread; of a GPU what it gains from)",
+           .help = "Of an ensemble, runs at a time (default: one a thread; of a GPU what it gains from)",
            .value = "N",
            .set = [given](const std::string& words) { given->at_a_time = members_at_a_time(words); }},
           {.name = "--profile",
@@ -92,21 +81,6 @@ std::vector<Flag> flags_into(const std::shared_ptr<SolveFlags>& given) {
            .help = "Say what is on, points, memory, steps and the time to expect; run and write nothing",
            .writes_nothing = true,
            .set = [given](const std::string&) { given->run.plan = true; }}};
-}
-
-/// The [solve] and, where it is made, the [budget] of a recipe, as they are used.
-std::string used_tables(const recipe::Recipe& recipe, bool budget_asked) {
-  const BudgetOptions budget = budget_of(recipe, budget_asked);
-  std::string text = recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
-  if (budget.make) text += "\n" + recipe::to_toml(budget, "budget", false);
-  return text;
-}
-
-std::string template_of_tables() {
-  return recipe::to_toml(SolveOptions{}, "solve", true) +
-         "\n# Runs that differ in one thing each, and say how sure the run is (--budget). All stages read this "
-         "table.\n" +
-         recipe::to_toml(BudgetOptions{}, "budget", true);
 }
 
 /// The id in run.h5 or counts.h5.
@@ -136,8 +110,6 @@ Dependencies depends(const StageContext& context, const SolveFlags& flags) {
   if (ensemble_of(context.recipe).on()) return depends_of_ensemble(context, ensemble_flags(flags));
   Dependencies depends{{RunPaths(context.out).run}, inputs_of(options_of(context.recipe, context.out), context.out)};
   depends.sealed = {depends.inputs.front()};
-  if (const BudgetOptions budget = budget_of(context.recipe, flags.budget); budget.make)
-    add_depends_of_budget(context, budget, depends);
   return depends;
 }
 
@@ -186,57 +158,12 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
   return find_stability(context, options, device, *domain);
 }
 
-/// This function notes what was used.
-void write_used(StageContext& context, const SolveOptions& options, const Facts& used) {
-  write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs_of(options, context.out), used);
-}
-
-/// This function does what the recipe asks for but a budget, and notes what was used.
-void solve_itself(StageContext& context, const SolveFlags& flags) {
+/// This function does what the recipe asks for, and notes what was used.
+void solve(StageContext& context, const SolveFlags& flags) {
   SolveOptions options = options_of(context.recipe, context.out);
   const Facts used = solved(context, flags, options);
-  if (!used.empty()) write_used(context, options, used);
-}
-
-/// This function does what is left to do for the run that is there, if the stage was killed before it had: what the run
-/// went on from is removed, and what was used is noted.
-void complete_run(StageContext& context) {
-  const RunPaths paths(context.out);
-  std::istringstream noted(text_if_there(context.out / "solve.used.toml").value_or(""));
-  const std::string mark = "# id: " + fact(run_facts(paths.run), run_id);
-  for (std::string line; std::getline(noted, line);)
-    if (line == mark) return;
-  remove_leftovers(paths);
-  const SolveOptions options = options_of(context.recipe, context.out);
-  const auto domain = std::make_shared<const Domain>(read_domain(inputs_of(options, context.out).front()));
-  Plan plan = begin_plan(domain, with_places(options, domain->places));
-  settle(plan);
-  write_used(context, noted_options(plan), facts_of(read_run(paths.run).summary));
-}
-
-/// This function makes the run, unless run.h5 is of this recipe, domain and version already, and then the runs of its
-/// budget.
-void solve_with_budget(StageContext& context, const SolveFlags& flags, const BudgetOptions& budget) {
-  refuse_budget(context, options_of(context.recipe, context.out), flags.run);
-  const bool reads_only = context.check_only || flags.run.plan;
-  const bool is_there = !reads_only && is_this_run(context);
-  SolveFlags of_itself = flags;
-  of_itself.at_a_time = 0;
-  of_itself.run.is_varied = true;
-  if (is_there) {
-    complete_run(context);
-  } else {
-    solve_itself(context, of_itself);
-  }
-  BudgetFlags how{
-      .on = choose_device(flags.on), .at_a_time = flags.at_a_time, .plan = flags.run.plan, .resume = flags.run.resume};
-  how.restart = is_there && flags.run.restart;  // a run that went on itself has no budget to go on from
-  run_budget(context, how, budget);
-}
-
-void solve(StageContext& context, const SolveFlags& flags) {
-  const BudgetOptions budget = budget_of(context.recipe, flags.budget);
-  budget.make ? solve_with_budget(context, flags, budget) : solve_itself(context, flags);
+  if (!used.empty())
+    write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs_of(options, context.out), used);
 }
 
 }  // namespace
@@ -248,10 +175,12 @@ Stage stage() {
   s.table = "solve";
   s.summary = "Simulate the slide in three dimensions with the material point method: domain.vdb -> run.h5.";
   s.examples = examples;
-  s.template_toml = template_of_tables;
+  s.template_toml = [] { return recipe::to_toml(SolveOptions{}, "solve", true); };
   s.flags = flags_into(given);
   s.depends = [given](const StageContext& context) { return depends(context, *given); };
-  s.used_toml = [given](const recipe::Recipe& recipe) { return used_tables(recipe, given->budget); };
+  s.used_toml = [](const recipe::Recipe& recipe) {
+    return recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
+  };
   s.id_of = id_in;
   s.part = [given] { return given->members ? fmt::format("{}-{}", given->members->first, given->members->end) : ""; };
   s.run = [given](StageContext& context) {

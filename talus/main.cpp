@@ -29,7 +29,7 @@ constexpr const char* footer =
     "Examples:\n"
     "  talus run my-slide/recipe.toml                     every stage whose results are not up to date\n"
     "  talus run recipe.toml --set solve.end_time_s=60    with another value than the recipe's\n"
-    "  talus run recipe.toml --budget                     and how sure the run is, doubt by doubt\n"
+    "  talus run recipe.toml --budget                     how sure the run is, doubt by doubt\n"
     "  talus run recipe.toml --plan                       what the run takes: points, steps, time\n"
     "  talus new before.tif after.tif                     a first recipe: spacing, layers and end time from the "
     "release\n"
@@ -62,8 +62,8 @@ void declare_scene(CLI::App& app, Asked& asked) {
       ->type_name("N")
       ->check(CLI::Range(1, 4096).description(""));
   app.add_flag_callback(
-      "--budget", [&asked] { asked.request.set.emplace_back("budget.make=true"); },
-      "Make the error budget too: how far each doubt moves the deposit");
+      "--budget", [&asked] { asked.request.set.emplace_back("ensemble.design=budget"); },
+      "Run single changes of the recipe instead (design = \"budget\"): how far each doubt moves the deposit");
   app.add_flag("--network", asked.request.network, "Let inputs name places on a network");
 }
 

@@ -76,7 +76,7 @@ def case_picture(name, asked):
 
 
 def make_budget(scene, asked, picture):
-    """The table of an error budget in the report of a scene."""
+    """The table of an error budget on its page."""
     sys.path.insert(0, str(ROOT / "tests/pipeline"))
     from browser import open_browser  # pylint: disable=import-outside-toplevel
     from selenium.webdriver.common.by import By  # pylint: disable=import-outside-toplevel
@@ -86,7 +86,7 @@ def make_budget(scene, asked, picture):
          stdout=subprocess.DEVNULL)
     browser = open_browser((1250, 1000))
     try:
-        browser.get((out / "report.html").resolve().as_uri())
+        browser.get((out / "ensemble.html").resolve().as_uri())
         WebDriverWait(browser, 60).until(
             lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'"))
         browser.find_element(By.ID, "budget-section").screenshot(str(FOLDER / picture))

@@ -47,7 +47,9 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
     for (auto footprints : footprints_of_members) (all.*footprints)[to] = std::move((part.*footprints)[from]);
     all.deposit_thickness[to] = std::move(part.deposit_thickness[from]);
   }
-  for (MemberWords& one : part.failures) add_in_order(all.failures, std::move(one));
+  all.grids.merge(part.grids);
+  for (auto list : {&EnsembleCounts::failures, &EnsembleCounts::changes})
+    for (MemberWords& one : part.*list) add_in_order(all.*list, std::move(one));
   for (Finding& finding : part.findings)
     if (finding.member != Finding::no_member) all.add_finding(finding.member, std::move(finding));
 }
@@ -71,6 +73,19 @@ std::vector<CameTo> keep_what_came(const RunMaps& run, const CellWindow& window,
       const bool came = std::any_of(std::begin(counted_maps), std::end(counted_maps),
                                     [&](const CountedMap& map) { return is_there(map, (run.*(map.values))[cell]); });
       if (came) found.push_back({cell, cells.keep(window.column + column, window.row + row)});
+    }
+  return found;
+}
+
+/// Values at the centres of another grid's cells; 0 beyond their own.
+std::vector<double> at_centres(const MapGrid& from, const std::vector<double>& values, const MapGrid& to) {
+  std::vector<double> found(to.count(), 0.0);
+  for (int row = 0; row < to.rows; ++row)
+    for (int column = 0; column < to.columns; ++column) {
+      const double across = std::floor((to.x(column) - from.west) / from.cell),
+                   up = std::floor((to.y(row) - from.south) / from.cell);
+      if (across >= 0 && up >= 0 && across < from.columns && up < from.rows)
+        found[to.index(column, row)] = values[from.index(static_cast<int>(across), static_cast<int>(up))];
     }
   return found;
 }
@@ -112,24 +127,40 @@ std::vector<std::int64_t> EnsembleCounts::at_edge() const {
   return found;
 }
 
+MapGrid EnsembleCounts::grid_of(std::int64_t member) const {
+  const auto other = grids.find(member);
+  return other != grids.end() ? other->second
+                              : cut(scene.grid, windows.at(static_cast<std::size_t>(member - part.first)));
+}
+
 void EnsembleCounts::add(std::int64_t member, const RunMaps& run, const MemberResult& result) {
   const auto place = static_cast<std::size_t>(member - part.first);
   const auto window = window_on(scene.grid, run.grid);
-  if (!window) throw std::logic_error("EnsembleCounts: a member's grid is no window of the scene's");
-  const std::vector<CameTo> cells_reached = keep_what_came(run, *window, cells);
+  if (!window && !other_cells) throw std::logic_error("EnsembleCounts: a member's grid is no window of the scene's");
+  if (window)
+    tally(run, *window);
+  else
+    grids[member] = run.grid;
+  states.at(place) = MemberState::counted;
+  results[place] = result;
+  windows[place] = window.value_or(CellWindow{0, 0, scene.grid.columns, scene.grid.rows});
+  const auto footprint = [&](const std::vector<double>& values, double threshold) {
+    return footprint_of(window ? values : at_centres(run.grid, values, scene.grid), threshold);
+  };
+  release[place] = footprint(run.initial_thickness, 0);
+  flow[place] = footprint(run.peak_thickness, scene.threshold);
+  deposit[place] = footprint(run.deposit_thickness, scene.threshold);
+  if (deposit_quantum > 0) deposit_thickness[place] = keep_thickness(run.deposit_thickness, deposit_quantum);
+}
+
+void EnsembleCounts::tally(const RunMaps& run, const CellWindow& window) {
+  const std::vector<CameTo> cells_reached = keep_what_came(run, window, cells);
   for (std::size_t m = 0; m < maps.size(); ++m) {
     const std::vector<double>& values = run.*(counted_maps[m].values);
     const BinEdges edges = bin_edges(counted_maps[m]);
     maps[m].grow(cells.count());
     for (const CameTo& cell : cells_reached) maps[m].add(counted_maps[m], edges, cell.place, values[cell.of_run]);
   }
-  states.at(place) = MemberState::counted;
-  results[place] = result;
-  windows[place] = *window;
-  release[place] = footprint_of(run.initial_thickness, 0);
-  flow[place] = footprint_of(run.peak_thickness, scene.threshold);
-  deposit[place] = footprint_of(run.deposit_thickness, scene.threshold);
-  if (keeps_deposits) deposit_thickness[place] = keep_thickness(run.deposit_thickness);
 }
 
 void EnsembleCounts::add_finding(std::int64_t member, Finding finding) {
@@ -140,6 +171,11 @@ void EnsembleCounts::add_finding(std::int64_t member, Finding finding) {
 void EnsembleCounts::fail(std::int64_t member, std::string words) {
   states.at(static_cast<std::size_t>(member - part.first)) = MemberState::failed;
   add_in_order(failures, {member, std::move(words)});
+}
+
+void EnsembleCounts::leave_out(std::int64_t member, std::string words) {
+  states.at(static_cast<std::size_t>(member - part.first)) = MemberState::left_out;
+  if (!words.empty()) add_in_order(failures, {member, std::move(words)});
 }
 
 bool is_at_edge(const MemberResult& result) { return result.edge_cells > 0 || result.volume_outflow > 0; }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -87,7 +88,7 @@ inline constexpr ResultNumber result_numbers[] = {
 };
 
 /// What became of a member.
-enum class MemberState : std::uint8_t { waiting = 0, counted = 1, failed = 2 };
+enum class MemberState : std::uint8_t { waiting = 0, counted = 1, failed = 2, left_out = 3 };
 
 /// The scene of an ensemble, for maps and pages.
 struct EnsembleScene {
@@ -113,9 +114,14 @@ struct EnsembleCounts {
   std::vector<MemberResult> results;             ///< likewise
   std::vector<CellWindow> windows;  ///< likewise: the member's grid among the scene's; empty unless counted
   std::vector<Footprint> release, flow, deposit;  ///< likewise, over the cells of the window; empty unless counted
-  std::vector<KeptThickness> deposit_thickness;   ///< likewise; of members that were added while keeps_deposits
-  bool keeps_deposits = false;                    ///< members that are added leave the map of their deposit
-  std::vector<MemberWords> failures;              ///< by member
+  std::vector<KeptThickness> deposit_thickness;   ///< likewise; of members that were added with a deposit_quantum
+  double deposit_quantum = 0;                     ///< members that are added leave the map of their deposit in
+                                                  ///< multiples of this [m]; 0: they leave none
+  bool other_cells = false;                       ///< members may have other cells than the scene's
+  std::map<std::int64_t, MapGrid> grids;  ///< theirs, on which their deposit is kept; maps count nothing of them
+                                          ///< and their footprints are on the scene's cells
+  std::vector<MemberWords> failures;      ///< of members that failed or are left out, by member
+  std::vector<MemberWords> changes;       ///< of a budget: what is other, then the keys that make it by hand
   Facts provenance;
   std::vector<Finding> findings;  ///< of the stages, then of members that ended, by member
 
@@ -123,12 +129,20 @@ struct EnsembleCounts {
   std::int64_t count(MemberState state) const;
   /// Numbers of counted members that came to the edge of their grid, or left it.
   std::vector<std::int64_t> at_edge() const;
-  /// The method counts a member's run. Throws std::logic_error where its grid is no window of the scene's.
+  /// The grid on which a counted member's deposit is kept.
+  MapGrid grid_of(std::int64_t member) const;
+  /// The method counts a member's run. Throws std::logic_error where its grid is no window of the scene's, unless
+  /// members may have other cells.
   void add(std::int64_t member, const RunMaps& maps, const MemberResult& result);
   /// The method notes what a member found.
   void add_finding(std::int64_t member, Finding finding);
   /// The method notes that a member failed.
   void fail(std::int64_t member, std::string words);
+  /// The method notes that a member is not to be run, and why; empty words: it has nothing to change.
+  void leave_out(std::int64_t member, std::string words);
+
+ private:
+  void tally(const RunMaps& run, const CellWindow& window);
 };
 
 /// Whether a member came to the edge of its grid: what lies beyond is not known.

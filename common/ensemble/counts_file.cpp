@@ -4,7 +4,9 @@
 // which cells are counted; /maps/NAME = counts of a map; /members = states, results, windows and footprints; /failures,
 // /provenance, /findings.
 #include <algorithm>
+#include <charconv>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -37,8 +39,8 @@ void write_footprints(h5::File& file, const std::string& group, const std::vecto
 }
 
 std::vector<Footprint> read_footprints(const h5::File& file, const std::string& group,
-                                       const std::vector<CellWindow>& windows) {
-  const std::size_t count = windows.size();
+                                       const std::vector<std::int64_t>& cells) {
+  const std::size_t count = cells.size();
   const auto ends = file.read<std::int64_t>(group + "/ends", {static_cast<hsize_t>(count)});
   const auto runs = file.read_list<std::int32_t>(group + "/runs");
   h5::check_values<std::int32_t>(file, group + "/runs", runs, h5::not_negative);
@@ -50,10 +52,9 @@ std::vector<Footprint> read_footprints(const h5::File& file, const std::string& 
     footprints[k].assign(runs.begin() + begin, runs.begin() + ends[k]);
     std::int64_t covered = 0;
     for (const std::int32_t length : footprints[k]) covered += length;
-    const std::int64_t cells = std::int64_t{windows[k].columns} * windows[k].rows;
-    if (!footprints[k].empty() && covered != cells)
+    if (!footprints[k].empty() && covered != cells[k])
       file.refuse(fmt::format("the footprint of place {} in {} is of {} cells", k, group, covered),
-                  fmt::format("its grid has {}", cells));
+                  fmt::format("its grid has {}", cells[k]));
   }
   return footprints;
 }
@@ -62,7 +63,8 @@ constexpr const char* thickness_group = "/members/deposit_thickness";
 
 /// Those of members that keep none are empty.
 void write_thickness(h5::File& file, const std::vector<KeptThickness>& members) {
-  if (std::ranges::none_of(members, &KeptThickness::kept)) return;
+  const auto first = std::ranges::find_if(members, &KeptThickness::kept);
+  if (first == members.end()) return;
   std::vector<Footprint> cells;
   std::vector<std::int32_t> values;
   for (const KeptThickness& one : members) {
@@ -70,18 +72,15 @@ void write_thickness(h5::File& file, const std::vector<KeptThickness>& members) 
     values.insert(values.end(), one.values.begin(), one.values.end());
   }
   write_footprints(file, thickness_group, cells);
-  file.set_number(thickness_group, "quantum_m", KeptThickness::quantum);
+  file.set_number(thickness_group, "quantum_m", first->quantum);
   file.write<std::int32_t>(std::string(thickness_group) + "/values", length_of(values), values);
 }
 
-std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vector<CellWindow>& windows) {
-  std::vector<KeptThickness> members(windows.size());
+std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vector<std::int64_t>& of_grids) {
+  std::vector<KeptThickness> members(of_grids.size());
   if (!file.exists(thickness_group)) return members;
-  const double quantum = file.number(thickness_group, "quantum_m");
-  if (quantum != KeptThickness::quantum)
-    file.refuse(fmt::format("the quantum of {} is {} m", thickness_group, quantum),
-                fmt::format("it is {} m", KeptThickness::quantum));
-  const std::vector<Footprint> cells = read_footprints(file, thickness_group, windows);
+  const double quantum = h5::checked_number(file, thickness_group, "quantum_m", h5::not_negative);
+  const std::vector<Footprint> cells = read_footprints(file, thickness_group, of_grids);
   const std::string path = std::string(thickness_group) + "/values";
   const auto values = file.read_list<std::int32_t>(path);
   h5::check_values<std::int32_t>(file, path, values, h5::not_negative);
@@ -93,7 +92,7 @@ std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vecto
   auto next = values.begin();
   for (std::size_t k = 0; k < members.size(); ++k) {
     const auto end = next + static_cast<std::ptrdiff_t>(covered_cells(cells[k]));
-    members[k] = {cells[k], {next, end}};
+    members[k] = {cells[k], {next, end}, quantum};
     next = end;
   }
   return members;
@@ -122,6 +121,29 @@ std::vector<CellWindow> read_windows(const h5::File& file, std::size_t count, co
   return windows;
 }
 
+constexpr const char* grids_group = "/members/grids";
+
+/// The grids of members whose cells are not the scene's, by member.
+std::map<std::int64_t, MapGrid> read_grids(const h5::File& file, const MemberRange& part) {
+  std::map<std::int64_t, MapGrid> grids;
+  if (!file.exists(grids_group)) return grids;
+  for (const std::string& name : file.children(grids_group)) {
+    std::int64_t member = -1;
+    std::from_chars(name.data(), name.data() + name.size(), member);
+    if (member < part.first || member >= part.end)
+      file.refuse(fmt::format("group {} names member \"{}\"", grids_group, name), "it is not of this part");
+    grids[member] = h5::read_grid(file, fmt::format("{}/{}", grids_group, name));
+  }
+  return grids;
+}
+
+/// The number of cells of each window.
+std::vector<std::int64_t> cells_in(const std::vector<CellWindow>& windows) {
+  std::vector<std::int64_t> cells;
+  for (const CellWindow& w : windows) cells.push_back(std::int64_t{w.columns} * w.rows);
+  return cells;
+}
+
 void write_members(h5::File& file, const EnsembleCounts& counts) {
   file.make_group("/members");
   std::vector<std::uint8_t> states;
@@ -141,11 +163,23 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
   write_footprints(file, "/members/flow", counts.flow);
   write_footprints(file, "/members/deposit", counts.deposit);
   write_thickness(file, counts.deposit_thickness);
+  if (!counts.grids.empty()) file.make_group(grids_group);
+  for (const auto& [member, grid] : counts.grids) {
+    const std::string group = fmt::format("{}/{:06}", grids_group, member);
+    file.make_group(group);
+    h5::write_grid(file, group, grid);
+  }
   write_member_words(file, "/failures", counts.failures);
+  if (!counts.changes.empty()) write_member_words(file, "/changes", counts.changes);
 }
 
 /// Refuses members whose state, failures and footprints do not belong together.
 void check_members(const h5::File& file, const EnsembleCounts& counts) {
+  const auto state_of = [&](std::int64_t member) {
+    const std::int64_t place = member - counts.part.first;
+    return place < 0 || place >= counts.part.count() ? MemberState::waiting
+                                                     : counts.states[static_cast<std::size_t>(place)];
+  };
   std::vector<std::int64_t> failed, told;
   for (std::size_t place = 0; place < counts.states.size(); ++place) {
     const auto member = counts.part.first + static_cast<std::int64_t>(place);
@@ -157,7 +191,8 @@ void check_members(const h5::File& file, const EnsembleCounts& counts) {
                               counts.flow[place].empty() ? "no" : "a"),
                   "those that are counted have one");
   }
-  for (const MemberWords& failure : counts.failures) told.push_back(failure.member);
+  for (const MemberWords& failure : counts.failures)
+    if (state_of(failure.member) != MemberState::left_out) told.push_back(failure.member);
   if (failed != told)
     file.refuse(fmt::format("{} members failed, and {} failures are told", failed.size(), told.size()),
                 "there is one for each of these members, in order");
@@ -174,7 +209,7 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
   const auto count = static_cast<hsize_t>(counts.part.count());
   const auto states = file.read<std::uint8_t>("/members/state", {count});
   h5::check_values<std::uint8_t>(file, "/members/state", states,
-                                 {.low = 0, .high = 2, .why = "there is no such state"});
+                                 {.low = 0, .high = 3, .why = "there is no such state"});
   for (const std::uint8_t state : states) counts.states.push_back(static_cast<MemberState>(state));
   counts.results.resize(count);
   for (const ResultNumber& number : result_numbers) {
@@ -184,12 +219,17 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
     for (std::size_t k = 0; k < values.size(); ++k) counts.results[k].*(number.value) = values[k];
   }
   counts.windows = read_windows(file, counts.states.size(), counts.scene.grid);
-  counts.release = read_footprints(file, "/members/release", counts.windows);
-  counts.flow = read_footprints(file, "/members/flow", counts.windows);
-  counts.deposit = read_footprints(file, "/members/deposit", counts.windows);
-  counts.deposit_thickness = read_thickness(file, counts.windows);
+  counts.grids = read_grids(file, counts.part);
+  std::vector<std::int64_t> cells = cells_in(counts.windows);
+  counts.release = read_footprints(file, "/members/release", cells);
+  counts.flow = read_footprints(file, "/members/flow", cells);
+  counts.deposit = read_footprints(file, "/members/deposit", cells);
+  for (const auto& [member, grid] : counts.grids)
+    cells[static_cast<std::size_t>(member - counts.part.first)] = static_cast<std::int64_t>(grid.count());
+  counts.deposit_thickness = read_thickness(file, cells);
   counts.failures = read_member_words(file, "/failures");
   counts.findings = h5::read_findings(file);
+  counts.changes = read_member_words(file, "/changes");
   check_members(file, counts);
 }
 
@@ -256,7 +296,8 @@ EnsembleCounts read_counts(const std::filesystem::path& path) {
   counts.scene = read_scene(file);
   read_members(file, counts);
   counts.cells = read_cells(file, counts.scene.grid);
-  const TallyShape shape{counts.cells.count(), counts.scene.tallied, counts.count(MemberState::counted)};
+  const TallyShape shape{counts.cells.count(), counts.scene.tallied,
+                         counts.count(MemberState::counted) - static_cast<std::int64_t>(counts.grids.size())};
   for (std::size_t m = 0; m < counts.maps.size(); ++m) counts.maps[m] = read_tally(file, counted_maps[m], shape);
   counts.provenance = h5::read_facts(file, "/provenance");
   return counts;

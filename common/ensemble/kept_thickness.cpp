@@ -2,15 +2,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/ensemble/kept_thickness.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 
-KeptThickness keep_thickness(std::span<const double> thickness) {
-  KeptThickness kept{footprint_of(thickness, 0), {}};
+KeptThickness keep_thickness(std::span<const double> thickness, double quantum) {
+  KeptThickness kept{footprint_of(thickness, 0), {}, quantum};
   kept.values.reserve(covered_cells(kept.cells));
+  constexpr double most = std::numeric_limits<std::int32_t>::max();
   for (const double h : thickness)
-    if (h > 0) kept.values.push_back(static_cast<std::int32_t>(std::lround(h / KeptThickness::quantum)));
+    if (h > 0) kept.values.push_back(static_cast<std::int32_t>(std::lround(std::min(h / quantum, most))));
   return kept;
 }
 

@@ -14,9 +14,9 @@ namespace talus {
 
 /// Thickness of the cells where there is any, in whole multiples of a quantum.
 struct KeptThickness {
-  static constexpr double quantum = 1e-3;  ///< [m]
-  Footprint cells;                         ///< that are thicker than 0; empty: nothing is kept
-  std::vector<std::int32_t> values;        ///< of those cells, in their order [quanta]
+  Footprint cells;                   ///< that are thicker than 0; empty: nothing is kept
+  std::vector<std::int32_t> values;  ///< of those cells, in their order [quanta]
+  double quantum = 0;                ///< [m]
 
   /// Whether a map is kept, be it of nothing.
   bool kept() const { return !cells.empty(); }
@@ -24,7 +24,7 @@ struct KeptThickness {
   std::vector<double> thickness(std::size_t count) const;
 };
 
-/// Keeps a map of thickness [m]; NaN is nothing.
-KeptThickness keep_thickness(std::span<const double> thickness);
+/// Keeps a map of thickness in multiples of `quantum` [m]; NaN is nothing.
+KeptThickness keep_thickness(std::span<const double> thickness, double quantum);
 
 }  // namespace talus

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/budget_options.hpp"
 #include "common/ensemble/ensemble_file.hpp"
 #include "common/recipe/values.hpp"
 #include "common/run/check_values.hpp"
@@ -69,7 +70,6 @@ std::vector<std::string> read_texts(const h5::File& file, const std::string& pat
 
 void write_slides(h5::File& file, const SlideTable& slides) {
   file.make_group("/slides");
-  write_texts(file, "/slides/names", slides.names);
   write_texts(file, "/slides/domains", slides.domains);
   h5::write_grid(file, "/slides", slides.lattice);
   std::vector<std::int32_t> windows;
@@ -91,12 +91,18 @@ void check_window(const h5::File& file, const SlideTable& slides, const CellWind
       fmt::format("the lattice has {} x {}", grid.columns, grid.rows));
 }
 
+/// A text for each member; empty where the file has none.
+std::vector<std::string> read_text_of_each(const h5::File& file, const std::string& path, std::int64_t count) {
+  if (!file.exists(path)) return {};
+  std::vector<std::string> texts = read_texts(file, path);
+  if (texts.size() != static_cast<std::size_t>(count))
+    file.refuse(fmt::format("dataset {} has {} lines", path, texts.size()), fmt::format("there are {} members", count));
+  return texts;
+}
+
 SlideTable read_slides(const h5::File& file, std::int64_t count) {
   SlideTable slides;
-  slides.names = read_texts(file, "/slides/names");
-  slides.domains = read_texts(file, "/slides/domains");
-  if (slides.names.size() != static_cast<std::size_t>(count) || slides.domains.size() != slides.names.size())
-    file.refuse(fmt::format("names {} slides", slides.names.size()), fmt::format("there are {}", count));
+  slides.domains = read_text_of_each(file, "/slides/domains", count);
   slides.lattice = h5::read_grid(file, "/slides");
   const auto windows = file.read<std::int32_t>("/slides/windows", {static_cast<hsize_t>(count), 4});
   for (std::size_t at = 0; at < windows.size(); at += 4) {
@@ -125,7 +131,7 @@ std::vector<std::string> MemberTable::values_of(std::int64_t member, const std::
 }
 
 std::string MemberTable::name_of(std::int64_t member) const {
-  if (slides) return slides->names.at(static_cast<std::size_t>(member));
+  if (!names.empty()) return names.at(static_cast<std::size_t>(member));
   return fmt::format("member {}", member);
 }
 
@@ -160,6 +166,8 @@ void write_member_table(const std::filesystem::path& path, const MemberTable& ta
       file.set_text(column, "words", lines_of(table.columns[n].words));
     }
     file.write<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)}, table.own_domain);
+    for (const auto& [where, texts] : {std::pair{"/names", &table.names}, std::pair{"/rows", &table.rows}})
+      if (!texts->empty()) write_texts(file, where, *texts);
     if (table.slides) write_slides(file, *table.slides);
     write_member_words(file, "/failures", table.failures);
     h5::write_facts(file, "/provenance", table.provenance);
@@ -177,6 +185,11 @@ MemberTable read_member_table(const std::filesystem::path& path) {
   for (const std::string& name : file.children("/keys"))
     table.columns.push_back(read_column(file, "/keys/" + name, table.count));
   table.own_domain = file.read<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)});
+  table.names = read_text_of_each(file, "/names", table.count);
+  table.rows = read_text_of_each(file, "/rows", table.count);
+  for (const std::string& row : table.rows)
+    if (!row.empty() && find_budget_row(row) == nullptr)
+      file.refuse(fmt::format("dataset /rows names \"{}\"", row), "a budget has no such row");
   if (file.exists("/slides")) table.slides = read_slides(file, table.count);
   table.failures = read_member_words(file, "/failures");
   for (const MemberWords& failure : table.failures)

@@ -28,7 +28,6 @@ struct MemberColumn {
 
 /// What members that are slides of their own over one elevation model have besides.
 struct SlideTable {
-  std::vector<std::string> names;    ///< [members]
   MapGrid lattice;                   ///< holds the windows of all; never a raster as a whole
   std::vector<CellWindow> windows;   ///< [members]: the cells of its domain among those of the lattice
   std::vector<std::string> domains;  ///< [members]: domain.id of its domain
@@ -43,13 +42,15 @@ struct MemberTable {
   std::int64_t sample_size = 0;  ///< design = "sensitivity": N of the N (d + 2) members; otherwise 0
   std::vector<MemberColumn> columns;
   std::vector<std::uint8_t> own_domain;  ///< [members]: 1 where it has a domain of its own
+  std::vector<std::string> names = {};   ///< [members]: of slides and of a budget; empty: they have none
+  std::vector<std::string> rows = {};    ///< [members]: of a budget, the row of each; empty: it is no budget
   std::optional<SlideTable> slides = {};
   std::vector<MemberWords> failures = {};  ///< of members whose domain cannot be made, by member
   Facts provenance = {};                   ///< of what made the table
 
   /// What a member's recipe has in the place of the base's, "key=value" each, of the keys that begin with `prefix`.
   std::vector<std::string> values_of(std::int64_t member, const std::string& prefix) const;
-  /// What a member is called: the slide's name, else "member 12".
+  /// What a member is called: its name, else "member 12".
   std::string name_of(std::int64_t member) const;
   /// What members are called, those beyond `most` by their number: "north, south and 3 more".
   std::string names_of(const std::vector<std::int64_t>& members, std::size_t most) const;

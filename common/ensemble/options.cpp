@@ -123,7 +123,7 @@ void CorrelationOptions::describe(recipe::Visitor& v) {
   v.number("rank_correlation", rank_correlation, {-1, 1, true, true}, "Spearman's, of a normal copula [-]");
 }
 
-void ElevationErrorOptions::describe(recipe::Visitor& v, const char* table) {
+void ElevationErrorOptions::describe(recipe::Visitor& v) {
   v.optional_number("terrain_deviation_m", terrain_deviation, recipe::positive,
                     "standard deviation of the ground's error, under and around the slide");
   v.optional_number("thickness_deviation_m", thickness_deviation, recipe::positive,
@@ -131,7 +131,7 @@ void ElevationErrorOptions::describe(recipe::Visitor& v, const char* table) {
   v.optional_number("range_m", range, recipe::positive, "distance from which errors are independent (spherical)");
   v.flag("from_survey", from_survey, "deviation and range as they are found on stable ground between the surveys");
   const bool given = terrain_deviation || thickness_deviation;
-  const std::string name = fmt::format("[{}] ", table);
+  const std::string name = "[ensemble.elevation_error] ";
   v.needs(!given || range.has_value(), {name + "range_m is missing", "errors of neighbouring cells are alike",
                                         "Give the distance from which they are independent, or from_survey = true"});
   v.needs(!from_survey || (!given && !range),
@@ -166,9 +166,11 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
        {design_name(Design::full_grid), Design::full_grid},
        {design_name(Design::one_at_a_time), Design::one_at_a_time},
        {design_name(Design::sensitivity), Design::sensitivity},
-       {design_name(Design::table), Design::table}},
-      "how the members are drawn; full-grid, one-at-a-time and table give their number themselves, and sensitivity "
-      "takes the largest number up to members that it can");
+       {design_name(Design::table), Design::table},
+       {design_name(Design::budget), Design::budget}},
+      "how the members are drawn; full-grid, one-at-a-time, table and budget give their number themselves, and "
+      "sensitivity takes the largest number up to members that it can; budget: the recipe and single changes of it, "
+      "members and [[ensemble.vary]] being left aside");
   v.integer("levels", levels, {2, 1000}, "full-grid, one-at-a-time: quantiles of each key");
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
   v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
@@ -177,11 +179,13 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
          "keep each member's map of the deposit's thickness: members.csv has its RMSE against the survey then");
   recipe::table(v, "thresholds", thresholds, "what the probability maps count");
   recipe::table(v, "elevation_error", elevation_error, "the error of the elevation models, another field each member");
+  recipe::table(v, "budget", budget, "design = \"budget\": which changes are made, and how large they are");
   recipe::list(v, "vary", vary, "a key that varies from member to member");
   recipe::list(v, "correlation", correlation, "two keys that vary together");
 }
 
 void EnsembleOptions::check(std::vector<Fault>& faults) const {
+  if (is_budget()) return budget.check(faults);
   if (!on()) return;
   if (vary.empty() && !elevation_error.acts() && design != Design::table)
     faults.push_back({"[ensemble] with nothing that varies", "all members would be the same run",
@@ -213,6 +217,7 @@ const char* design_name(Design design) {
     case Design::full_grid: return "full-grid";
     case Design::one_at_a_time: return "one-at-a-time";
     case Design::sensitivity: return "sensitivity";
+    case Design::budget: return "budget";
     case Design::slides: return "slides";
     case Design::table: break;
   }

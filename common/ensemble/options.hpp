@@ -4,11 +4,13 @@
 // talus-solve runs them and counts, talus-postprocess makes the maps.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/ensemble/budget_options.hpp"
 #include "common/recipe/recipe.hpp"
 
 namespace talus {
@@ -23,6 +25,7 @@ enum class Design {
   one_at_a_time,      ///< the middle, then each key at its `levels` quantiles with the others in the middle
   sensitivity,        ///< two independent samples and their mixtures, for Sobol indices (Saltelli 2002)
   table,              ///< as a file of comma-separated values says
+  budget,             ///< the recipe itself, then one change each, as [ensemble.budget] says
   slides,             ///< the slides of [slides], each a member: no sample of anything
 };
 
@@ -62,7 +65,7 @@ struct ElevationErrorOptions {
   std::optional<double> thickness_deviation;  ///< of the released thickness [m]
   std::optional<double> range;                ///< of the spherical correlation [m]
   bool from_survey = false;                   ///< deviation and range as talus-preprocess finds on stable ground
-  void describe(recipe::Visitor& v, const char* table = "ensemble.elevation_error");
+  void describe(recipe::Visitor& v);
 
   /// Whether the ground or the release differs from member to member by it.
   bool acts() const { return from_survey || terrain_deviation || thickness_deviation; }
@@ -80,7 +83,7 @@ struct ThresholdOptions {
 
 /// What [ensemble] and [slides] alike say of the runs of their members.
 struct MemberRunOptions {
-  double failed_share = 0.05;  ///< of the members that may fail before the ensemble does
+  double failed_share = 0.05;  ///< of the members that may fail before the ensemble does; of a budget any may
   std::vector<int> keep;       ///< members whose whole run is kept
   bool keep_all = false;
   double save_interval = 60;  ///< wall time after which what is finished is saved [s]
@@ -98,6 +101,7 @@ struct EnsembleOptions : MemberRunOptions {
   std::filesystem::path table;  ///< of design = "table"
   ThresholdOptions thresholds;
   ElevationErrorOptions elevation_error;
+  BudgetOptions budget;
   std::vector<VaryOptions> vary;
   std::vector<CorrelationOptions> correlation;
   void describe(recipe::Visitor& v);
@@ -105,7 +109,11 @@ struct EnsembleOptions : MemberRunOptions {
   void check(std::vector<Fault>& faults) const;
 
   /// Whether the recipe asks for an ensemble.
-  bool on() const { return members > 0; }
+  bool on() const { return members > 0 || is_budget(); }
+  /// Whether its members are single changes of the recipe.
+  bool is_budget() const { return design == Design::budget; }
+  /// The number of members that may fail before the ensemble does, of so many.
+  double may_fail(std::int64_t of) const { return (is_budget() ? 1 : failed_share) * static_cast<double>(of); }
 };
 
 /// The [ensemble] of a recipe; members = 0 where it has none. Of a recipe with [slides], what that table says of the

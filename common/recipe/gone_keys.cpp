@@ -16,6 +16,9 @@ struct GoneKeys {
 };
 
 constexpr GoneKeys gone_keys[] = {
+    {"budget",
+     "Give its keys in [ensemble.budget], with design = \"budget\" in [ensemble]; seed and elevation_error are "
+     "keys of [ensemble]"},
     {"postprocess.animation", "Put \"mp4\" or \"gif\" into outputs of [postprocess]"},
     {"postprocess.avaframe avaframe_format", "Put \"avaframe-tif\" or \"avaframe-asc\" into outputs of [postprocess]"},
     {"postprocess.nodata_zero", "Convert the map where a tool needs that: gdalwarp -dstnodata 0 IN.tif OUT.tif"},

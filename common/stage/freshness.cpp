@@ -25,9 +25,6 @@ constexpr std::string_view checksum_mark = "  sha256 ", id_mark = "  id ",
                            no_checksum = "  not a plain file, no checksum";
 constexpr std::size_t most_keys_named = 5;
 
-/// Tables that add results to those of others: without one, the others are what they are.
-bool is_addition(const std::string& table) { return table == "budget"; }
-
 /// "[solve.material]", "[[solve.part]]" -> "solve"; empty: no head of a table.
 std::string table_of_head(std::string_view line) {
   const auto begin = line.find_first_not_of('[');
@@ -142,7 +139,7 @@ std::string changed_tables(const Record& record, const std::string& fresh) {
       return fmt::format("[{}] has changed{}", name, changed_keys(record, fresh, name));
   }
   for (const auto& [name, checksum] : record.tables)
-    if (!tables.contains(name) && !is_addition(name)) return fmt::format("[{}] is gone", name);
+    if (!tables.contains(name)) return fmt::format("[{}] is gone", name);
   return "";
 }
 

@@ -137,8 +137,10 @@ std::string member_list(const std::vector<std::int64_t>& members, std::size_t mo
 }
 
 std::string members_words(const Ensemble& ensemble) {
+  const std::int64_t left_out = ensemble.counts.count(MemberState::left_out);
   return fmt::format("{} of {} members are counted, {} failed, {} wait", ensemble.counted(), ensemble.counts.members,
-                     ensemble.failed(), ensemble.waiting());
+                     ensemble.failed(), ensemble.waiting()) +
+         (left_out > 0 ? fmt::format(", {} left out", left_out) : "");
 }
 
 }  // namespace talus::postprocess

@@ -30,7 +30,7 @@ std::vector<double> usual_limits(HazardIntensity intensity) {
 }  // namespace
 
 std::optional<HazardRule> hazard_rule(const Ensemble& ensemble, const HazardOptions& options) {
-  if (ensemble.table.slides) return std::nullopt;
+  if (!ensemble.table.names.empty()) return std::nullopt;  // slides or a budget: no sample
   HazardRule rule{.tally = tally_of(options.intensity),
                   .thresholds = {},
                   .intensity = options.limits.empty() ? usual_limits(options.intensity) : options.limits,

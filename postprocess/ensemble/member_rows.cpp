@@ -11,15 +11,6 @@
 namespace talus::postprocess {
 namespace {
 
-const char* word_of(MemberState state) {
-  switch (state) {
-    case MemberState::counted: return "counted";
-    case MemberState::failed: return "failed";
-    case MemberState::waiting: break;
-  }
-  return "waiting";
-}
-
 std::string cell(const RowColumn& column, std::size_t member) {
   const double value = column.values[member];
   if (std::isnan(value)) return "";
@@ -27,6 +18,11 @@ std::string cell(const RowColumn& column, std::size_t member) {
 }
 
 }  // namespace
+
+const char* word_of(MemberState state) {
+  constexpr const char* words[] = {"waiting", "counted", "failed", "left out"};
+  return words[static_cast<std::size_t>(state)];
+}
 
 MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey) {
   const EnsembleCounts& counts = ensemble.counts;
@@ -39,9 +35,8 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
     std::string& words = rows.warnings.at(static_cast<std::size_t>(warning.member));
     words += (words.empty() ? "" : "; ") + warning.message;
   }
-  if (ensemble.table.slides) {
-    const auto& names = ensemble.table.slides->names;
-    RowColumn column{ColumnKind::input, "name", "", "name of the slide", {}, names};
+  if (const auto& names = ensemble.table.names; !names.empty()) {
+    RowColumn column{ColumnKind::input, "name", "", ensemble.table.slides ? "name of the slide" : "name", {}, names};
     for (std::size_t k = 0; k < names.size(); ++k) column.values.push_back(static_cast<double>(k));
     rows.columns.push_back(std::move(column));
   }

@@ -29,10 +29,13 @@ struct RowColumn {
 /// The table of members.
 struct MemberRows {
   std::vector<MemberState> states;    ///< [members]
-  std::vector<std::string> failures;  ///< [members]: why it failed; empty otherwise
+  std::vector<std::string> failures;  ///< [members]: why it failed or was left out; empty otherwise
   std::vector<std::string> warnings;  ///< [members]: what it warned of; empty otherwise
   std::vector<RowColumn> columns;
 };
+
+/// The state of a member in words: "left out".
+const char* word_of(MemberState state);
 
 /// Inputs, results, and scores against the survey where there is one.
 MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey);

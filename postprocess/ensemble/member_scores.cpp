@@ -99,8 +99,9 @@ void Scores::score(std::size_t k) {
   deposit_[0].values[k] =
       compare(on_survey(counts_.deposit[k], from, to), 0.5, surveyed_deposit_, deposit_threshold_, cell_area_).csi();
   if (!counts_.deposit_thickness[k].kept()) return;
-  const ThicknessError error =
-      thickness_error(deposit_on_survey(counts_.deposit_thickness[k], from, to), surveyed_deposit_, deposit_threshold_);
+  const ThicknessError error = thickness_error(
+      deposit_on_survey(counts_.deposit_thickness[k], counts_.grid_of(static_cast<std::int64_t>(k)), to),
+      surveyed_deposit_, deposit_threshold_);
   thickness_[0].values[k] = error.rmse;
   thickness_[1].values[k] = error.bias;
 }

@@ -37,13 +37,18 @@ constexpr std::size_t words_on_page = 50, steps_of_convergence = 160, medoids_wa
 /// Of which footprints are compared, each with each.
 constexpr std::size_t members_compared = 400;
 
-/// The first of what is said of members.
+/// The first of what is said of members that are not left out.
 Json words_json(const Ensemble& ensemble, const std::vector<MemberWords>& list) {
   auto json = Json::array();
   for (const MemberWords& one : list)
-    if (json.size() < words_on_page) json.push_back({ensemble.table.name_of(one.member), one.words});
+    if (json.size() < words_on_page &&
+        ensemble.counts.states[static_cast<std::size_t>(one.member)] != MemberState::left_out)
+      json.push_back({ensemble.table.name_of(one.member), one.words});
   return json;
 }
+
+/// Whether members are draws of one thing, and neither slides nor single changes.
+bool is_sample(const Ensemble& ensemble) { return ensemble.table.names.empty(); }
 
 Json run_json(const EnsemblePageInput& input) {
   const Ensemble& ensemble = input.ensemble;
@@ -70,6 +75,7 @@ Json run_json(const EnsemblePageInput& input) {
   json["hazard"] = rule ? Json(hazard_words(*rule)) : Json();
   json["survey"] = input.survey ? Json(input.survey->name) : Json();
   json["slides"] = ensemble.table.slides.has_value();
+  json["sampled"] = is_sample(ensemble);
   const std::vector<std::int64_t> at_edge = counts.at_edge();
   json["at_edge"] = at_edge.empty() ? Json() : Json(names_at_edge(ensemble, at_edge));
   json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);
@@ -153,6 +159,8 @@ Json medoids_json(const Ensemble& ensemble) {
 
 }  // namespace
 
+Json no_medoids() { return {{"members", Json::array()}, {"counts", Json::array()}, {"of", 0}, {"mean_distance", 0}}; }
+
 Window ensemble_window(const EnsemblePageInput& input) {
   RunMaps maps = base_maps(input.ensemble.counts.scene);
   const EnsembleCounts& counts = input.ensemble.counts;
@@ -170,7 +178,7 @@ std::string ensemble_html(const EnsemblePageInput& input) {
   const Window window = ensemble_window(input);
   int coarsest = 1;
   PageParts parts{ensemble_maps_json(input, window, coarsest), ensemble_outlines_json(input, window),
-                  medoids_json(input.ensemble)};
+                  is_sample(input.ensemble) ? medoids_json(input.ensemble) : no_medoids()};
   parts.map["coarsest"] = coarsest;
   return ensemble_html(input, std::move(parts));
 }
@@ -183,11 +191,14 @@ std::string ensemble_html(const EnsemblePageInput& input, PageParts parts) {
   data["medoids"] = std::move(parts.medoids);
   data["members"] = members_json(input.rows);
   data["sensitivity"] = sensitivity_json(input);
-  data["convergence"] = input.ensemble.table.slides ? Json::array() : convergence_json(input.rows);
+  data["convergence"] = is_sample(input.ensemble) ? convergence_json(input.rows) : Json::array();
+  data["budget"] = input.budget == nullptr ? Json() : budget_json(*input.budget);
   data["stages"] = stages_json(input.stages);
-  for (const char* part : {"run", "stages"}) leave_out_folders(data[part]);
+  for (const char* part : {"run", "stages", "budget"}) leave_out_folders(data[part]);
   return filled_page(ensemble_template(),
-                     input.ensemble.counts.scene.title + (input.ensemble.table.slides ? ": slides" : ": ensemble"),
+                     input.ensemble.counts.scene.title + (input.ensemble.table.slides ? ": slides"
+                                                          : input.budget != nullptr   ? ": error budget"
+                                                                                      : ": ensemble"),
                      data);
 }
 

@@ -3,12 +3,14 @@
 // ensemble.html: one self-contained page about an ensemble, for people.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "postprocess/ensemble/budget_table.hpp"
 #include "postprocess/ensemble/ensemble.hpp"
 #include "postprocess/ensemble/maps_of_ensemble.hpp"
 #include "postprocess/ensemble/member_rows.hpp"
@@ -28,6 +30,7 @@ struct EnsemblePageInput {
   const MemberRows& rows;
   const std::vector<std::pair<std::string, Sensitivity>>& sensitivity;
   std::vector<StageText> stages;
+  const BudgetTable* budget = nullptr;  ///< of a budget; null: it is none
 };
 
 /// What a page holds at most; it stays below some ten megabytes and says what it leaves out.
@@ -43,18 +46,30 @@ struct PageParts {
   Json map, outlines, medoids;
 };
 
+/// No member stands for others.
+Json no_medoids();
+
 /// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere. Throws DataError where a *.used.toml
 /// cannot be read.
 std::string ensemble_html(const EnsemblePageInput& input);
 std::string ensemble_html(const EnsemblePageInput& input, PageParts parts);
 
-/// How a map is drawn: its classes as QGIS has them.
-Json classes_json(const EnsembleMap& map, const std::vector<double>& values, const HazardOptions& hazard);
+/// A map as the page shows it, drawn in the classes of its style for QGIS.
+struct MapOnPage {
+  std::string id, title, unit;
+  double level = nan;  ///< threshold or share; NaN: it has none
+  RasterStyle style;
+  Raster raster;
+};
+
+/// So many maps of one grid, packed end to end.
+Json packed_maps(std::size_t count, const std::function<MapOnPage(std::size_t)>& made);
 
 /// The part of the map that is shown: all that any member reached, released or surveyed.
 Window ensemble_window(const EnsemblePageInput& input);
 
-/// Ground, and of every quantity the shares at its thresholds, its quantiles, mean and deviation; hazard classes.
+/// Ground, and of every quantity the shares at its thresholds, its quantiles, mean and deviation; hazard classes. Of a
+/// budget the maps of spread.
 /// `coarsest` is left as the largest number of cells made one along a side.
 Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, int& coarsest);
 

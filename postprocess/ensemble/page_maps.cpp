@@ -6,6 +6,7 @@
 
 #include "postprocess/ensemble/maps_of_ensemble.hpp"
 #include "postprocess/ensemble/page.hpp"
+#include "postprocess/ensemble/write_maps.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/report/pack.hpp"
 
@@ -40,24 +41,37 @@ class PageMaps {
   int factor_ = 1;
 };
 
-/// All maps of a kind of one quantity, packed end to end. What is dangerous survives where cells are made one.
+/// All maps of a kind of one quantity. What is dangerous survives where cells are made one.
 Json stack(const PageMaps& page, const std::vector<EnsembleMap>& maps, MergedCells merge) {
-  Json json{{"maps", Json::array()}};
-  std::vector<std::vector<double>> frames;
-  for (const EnsembleMap& map : maps) {
+  return packed_maps(maps.size(), [&](std::size_t n) {
     stop_if_interrupted("making ensemble.html");
+    const EnsembleMap& map = maps[n];
     const std::vector<double> values = page.values(map);
-    const Raster raster = page.shown(values, merge);
-    json["maps"].push_back({{"id", map.name},
-                            {"title", map.title},
-                            {"unit", unit_words(map.unit)},
-                            {"level", std::isfinite(map.level) ? Json(map.level) : Json()},
-                            {"classes", classes_json(map, values, page.hazard())}});
-    json["grid"] = grid_json(raster.grid);
-    frames.push_back(raster.values);
-  }
-  json["data"] = packed(frames);
-  return json;
+    return MapOnPage{map.name,
+                     map.title,
+                     unit_words(map.unit),
+                     map.level,
+                     style_of(map, values, page.hazard()),
+                     page.shown(values, merge)};
+  });
+}
+
+/// The maps of spread of a budget, as a quantity.
+Json spreads(const PageMaps& page, const BudgetTable& budget) {
+  return {{"id", "deposit_spread"},
+          {"title", "Spread of the deposit"},
+          {"unit", "m"},
+          {"early", false},
+          {"shares", nullptr},
+          {"statistics", packed_maps(budget.spreads.size(), [&](std::size_t n) {
+             const SpreadMap& map = budget.spreads[n];
+             return MapOnPage{map.name,
+                              std::string("Over ") + map.over,
+                              "m",
+                              nan,
+                              spread_style(map),
+                              page.shown(map.raster.values, MergedCells::largest)};
+           })}};
 }
 
 Json ground(const PageMaps& page, const EnsembleScene& scene) {
@@ -69,22 +83,35 @@ Json ground(const PageMaps& page, const EnsembleScene& scene) {
 
 }  // namespace
 
-Json classes_json(const EnsembleMap& map, const std::vector<double>& values, const HazardOptions& hazard) {
-  const RasterStyle style = style_of(map, values, hazard);
-  auto list = Json::array();
-  double from = style.hidden_to > style.hidden_from ? style.hidden_to : -1e300;
-  for (const StyleClass& one : style.classes) {
-    list.push_back({{"from", from},
-                    {"to", std::isfinite(one.upper) ? Json(one.upper) : Json()},
-                    {"colour", hex(one.colour)},
-                    {"label", one.label}});
-    from = one.upper;
+Json packed_maps(std::size_t count, const std::function<MapOnPage(std::size_t)>& made) {
+  Json json{{"maps", Json::array()}};
+  std::vector<std::vector<double>> frames;
+  for (std::size_t n = 0; n < count; ++n) {
+    MapOnPage map = made(n);
+    auto classes = Json::array();
+    double from = map.style.hidden_to > map.style.hidden_from ? map.style.hidden_to : -1e300;
+    for (const StyleClass& one : map.style.classes) {
+      classes.push_back({{"from", from},
+                         {"to", std::isfinite(one.upper) ? Json(one.upper) : Json()},
+                         {"colour", hex(one.colour)},
+                         {"label", one.label}});
+      from = one.upper;
+    }
+    json["maps"].push_back({{"id", map.id},
+                            {"title", map.title},
+                            {"unit", map.unit},
+                            {"level", std::isfinite(map.level) ? Json(map.level) : Json()},
+                            {"classes", std::move(classes)}});
+    json["grid"] = grid_json(map.raster.grid);
+    frames.push_back(std::move(map.raster.values));
   }
-  return list;
+  json["data"] = packed(frames);
+  return json;
 }
 
 Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, int& coarsest) {
-  const std::vector<EnsembleMap> all = ensemble_maps(input.ensemble, input.options.hazard);
+  std::vector<EnsembleMap> all;
+  if (input.budget == nullptr) all = ensemble_maps(input.ensemble, input.options.hazard);
   const auto shown = std::count_if(all.begin(), all.end(), [](const EnsembleMap& map) {
     return map.kind != Kind::error && map.kind != Kind::to_halve;  // the page finds these from the shares
   });
@@ -93,6 +120,11 @@ Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, in
       {"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
   json["ground"] = ground(page, input.ensemble.counts.scene);
   json["quantities"] = Json::array();
+  json["hazard"] = nullptr;
+  if (input.budget != nullptr) {
+    json["quantities"].push_back(spreads(page, *input.budget));
+    return json;
+  }
   for (std::size_t tally = 0; tally < counted_map_count; ++tally) {
     const CountedMap& what = counted_maps[tally];
     std::vector<EnsembleMap> shares, statistics;
@@ -110,7 +142,6 @@ Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, in
          {"shares", shares.empty() ? Json() : stack(page, shares, MergedCells::largest)},
          {"statistics", stack(page, statistics, what.early ? MergedCells::smallest : MergedCells::largest)}});
   }
-  json["hazard"] = nullptr;
   if (all.back().kind == Kind::hazard) json["hazard"] = stack(page, {all.back()}, MergedCells::largest);
   return json;
 }

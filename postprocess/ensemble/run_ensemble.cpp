@@ -8,6 +8,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/input_file.hpp"
+#include "postprocess/ensemble/budget_table.hpp"
 #include "postprocess/ensemble/hazard.hpp"
 #include "postprocess/ensemble/page.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
@@ -67,29 +68,70 @@ std::string used_text(const StageContext& context, const Stage& stage, const Opt
                       {"CRS", crs_name(ensemble.counts.scene.grid.crs_wkt)}});
 }
 
-void write_results(StageContext& context, const Stage& stage, const Options& options, const Ensemble& ensemble,
-                   const std::optional<Survey>& survey) {
-  const auto write = [&](const char* name, const std::string& bytes) {
+/// The results of an ensemble, written one after another.
+class EnsembleResults {
+ public:
+  EnsembleResults(StageContext& context, const Stage& stage, const Options& options, const Ensemble& ensemble,
+                  const std::optional<Survey>& survey)
+      : context_(context),
+        options_(options),
+        ensemble_(ensemble),
+        survey_(survey),
+        rows_(member_rows(ensemble, options, survey)),
+        used_(used_text(context, stage, options, ensemble, survey)) {}
+
+  void write() {
+    for (const char* older : {"probability.nc", "budget.json", "ensemble.html"}) remove_for_good(context_.out / older);
+    write("members.csv", members_csv(rows_));
+    write("postprocess.used.toml", used_);
+    ensemble_.table.rows.empty() ? write_probabilities() : write_budget();
+  }
+
+ private:
+  void write(const char* name, const std::string& bytes) {
     stop_if_interrupted(std::string("writing ") + name);
-    context.results.push_back(context.out / name);
-    write_text(context.results.back(), bytes);
-  };
-  for (const char* older : {"probability.nc", "ensemble.html"}) remove_for_good(context.out / older);
-  const MemberRows rows = member_rows(ensemble, options, survey);
-  write("members.csv", members_csv(rows));
-  const auto sensitive = sensitivities(ensemble, rows);
-  write("sensitivity.csv", sensitivity_csv(sensitive));
-  make_folder(context.out / "probability");
-  for (const fs::path& file : write_probability_maps(context.out / "probability", ensemble, options))
-    context.results.push_back(file);
-  const std::string used = used_text(context, stage, options, ensemble, survey);
-  write("postprocess.used.toml", used);
-  if (options.writes("report"))
-    write("ensemble.html", ensemble_html({ensemble, options, survey, rows, sensitive, texts_of_stages(context, used)}));
-  stop_if_interrupted("writing probability.nc");
-  context.results.push_back(context.out / "probability.nc");
-  write_probability_netcdf(context.results.back(), ensemble, rows, options, context.command_line);
-}
+    context_.results.push_back(context_.out / name);
+    write_text(context_.results.back(), bytes);
+  }
+  std::filesystem::path made_folder(const char* name) const {
+    make_folder(context_.out / name);
+    return context_.out / name;
+  }
+  void add(const std::vector<fs::path>& files) {
+    context_.results.insert(context_.results.end(), files.begin(), files.end());
+  }
+  void write_page(const std::vector<std::pair<std::string, Sensitivity>>& sensitive, const BudgetTable* budget) {
+    if (options_.writes("report"))
+      write("ensemble.html",
+            ensemble_html({ensemble_, options_, survey_, rows_, sensitive, texts_of_stages(context_, used_), budget}));
+  }
+
+  void write_probabilities() {
+    const auto sensitive = sensitivities(ensemble_, rows_);
+    write("sensitivity.csv", sensitivity_csv(sensitive));
+    add(write_probability_maps(made_folder("probability"), ensemble_, options_));
+    write_page(sensitive, nullptr);
+    stop_if_interrupted("writing probability.nc");
+    context_.results.push_back(context_.out / "probability.nc");
+    write_probability_netcdf(context_.results.back(), ensemble_, rows_, options_, context_.command_line);
+  }
+
+  void write_budget() {
+    const BudgetTable table = budget_table(ensemble_, rows_, options_);
+    write("budget.csv", budget_csv(table));
+    add(write_spread_maps(made_folder("budget"), ensemble_, options_, table));
+    write_page({}, &table);
+    write("budget.json", budget_json(table).dump(2) + "\n");
+    log_info("\n" + budget_words(table));
+  }
+
+  StageContext& context_;
+  const Options& options_;
+  const Ensemble& ensemble_;
+  const std::optional<Survey>& survey_;
+  const MemberRows rows_;
+  const std::string used_;
+};
 
 }  // namespace
 
@@ -102,7 +144,8 @@ std::vector<StageText> texts_of_stages(const StageContext& context, const std::s
 }
 
 Dependencies ensemble_depends(const StageContext& context) {
-  return {{context.out / "probability.nc"}, ensemble_files(context.out)};
+  const bool budget = ensemble_of(context.recipe).is_budget();
+  return {{context.out / (budget ? "budget.json" : "probability.nc")}, ensemble_files(context.out)};
 }
 
 void run_ensemble(StageContext& context, const Stage& stage, const Options& options, bool alone) {
@@ -114,12 +157,12 @@ void run_ensemble(StageContext& context, const Stage& stage, const Options& opti
   ensemble.findings = found.list();
   hazard_rule(ensemble, options.hazard);
   const MapGrid& grid = ensemble.counts.scene.grid;
-  const double draws = independent_draws(ensemble.table, ensemble.counted());
-  log_info(fmt::format(
-      "ensemble: {}; {} x {} cells of {:g} m; design {}; the standard error of a probability of one "
-      "half is {:.2g}",
-      members_words(ensemble), grid.columns, grid.rows, grid.cell, ensemble.table.design, standard_error(0.5, draws)));
-  if (!context.check_only) write_results(context, stage, options, ensemble, survey);
+  std::string words = fmt::format("ensemble: {}; {} x {} cells of {:g} m; design {}", members_words(ensemble),
+                                  grid.columns, grid.rows, grid.cell, ensemble.table.design);
+  if (const double draws = independent_draws(ensemble.table, ensemble.counted()); ensemble.table.rows.empty())
+    words += fmt::format("; the standard error of a probability of one half is {:.2g}", standard_error(0.5, draws));
+  log_info(words);
+  if (!context.check_only) EnsembleResults(context, stage, options, ensemble, survey).write();
 }
 
 }  // namespace talus::postprocess

@@ -22,7 +22,8 @@ double independent_draws(const MemberTable& table, std::int64_t counted) {
 }
 
 bool is_probability(const std::string& design) {
-  return design != "slides" && design != "one-at-a-time" && design != "table" && design != "full-grid";
+  return design != "slides" && design != "budget" && design != "one-at-a-time" && design != "table" &&
+         design != "full-grid";
 }
 
 ShareWords share_words(const std::string& design) {

@@ -14,6 +14,7 @@
 #include "common/stage/in_threads.hpp"
 #include "postprocess/ensemble/facts.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/fields/styles.hpp"
 #include "postprocess/fields/window.hpp"
 
 namespace talus::postprocess {
@@ -125,24 +126,27 @@ void write_ground(Writing& writing) {
   writing.files.push_back(write_qgis_hillshade_style(terrain));
 }
 
-void write_project(Writing& writing) {
+/// The project of these groups between the outlines and the ground; `called`: "ensemble".
+void write_project(Writing& writing, const std::string& called, const std::vector<ProjectGroup>& groups) {
   const EnsembleScene& scene = writing.ensemble.counts.scene;
   const fs::path outlines = writing.folder / "outlines.gpkg";
-  const OutlineLayer release{"release",
-                             {{"release", outline_above({scene.grid, scene.release_thickness}, scene.threshold), {}}}};
-  write_outlines(outlines, scene.grid.crs_wkt, {writing.outlines, release});
-  writing.lines.layers = {{"Release", "outlines.gpkg|layername=release", true, release_line},
-                          {"Probability of 5, 50 and 95 %", "outlines.gpkg|layername=probability", false, share_line}};
+  std::vector<OutlineLayer> layers{
+      {"release", {{"release", outline_above({scene.grid, scene.release_thickness}, scene.threshold), {}}}}};
+  writing.lines.layers = {{"Release", "outlines.gpkg|layername=release", true, release_line}};
+  if (writing.ensemble.table.rows.empty()) {
+    layers.insert(layers.begin(), writing.outlines);
+    writing.lines.layers.push_back(
+        {"Probability of 5, 50 and 95 %", "outlines.gpkg|layername=probability", false, share_line});
+  }
+  write_outlines(outlines, scene.grid.crs_wkt, layers);
   const Window window = reached_window(writing.ensemble, writing.options);
-  const QgisProject project{scene.title + " (ensemble)",
-                            scene.grid.crs_wkt,
-                            {window.west, window.south, window.east, window.north},
-                            {writing.lines,
-                             writing.shares,
-                             writing.statistics,
-                             writing.errors,
-                             {"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}}}};
-  const fs::path file = writing.folder / (file_word(scene.scene) + "-ensemble.qgs");
+  QgisProject project{fmt::format("{} ({})", scene.title, called),
+                      scene.grid.crs_wkt,
+                      {window.west, window.south, window.east, window.north},
+                      {writing.lines}};
+  project.groups.insert(project.groups.end(), groups.begin(), groups.end());
+  project.groups.push_back({"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}});
+  const fs::path file = writing.folder / fmt::format("{}-{}.qgs", file_word(scene.scene), called);
   write_qgis_project(file, project);
   writing.files.insert(writing.files.end(), {outlines, file});
 }
@@ -153,7 +157,33 @@ std::vector<fs::path> write_probability_maps(const fs::path& folder, const Ensem
   Writing writing{folder, ensemble, options};
   write_maps(writing);
   write_ground(writing);
-  write_project(writing);
+  write_project(writing, "ensemble", {writing.shares, writing.statistics, writing.errors});
+  return writing.files;
+}
+
+RasterStyle spread_style(const SpreadMap& map) {
+  return class_style(thickness_limits({}, map.raster.values), "m", Ramp::sea);
+}
+
+std::vector<fs::path> write_spread_maps(const fs::path& folder, const Ensemble& ensemble, const Options& options,
+                                        const BudgetTable& table) {
+  Writing writing{folder, ensemble, options};
+  ProjectGroup group{"How sure", {}};
+  for (const SpreadMap& map : table.spreads) {
+    const std::string title = std::string("spread of the deposit thickness over ") + map.over;
+    Facts facts = ensemble_facts(ensemble);
+    facts.insert(facts.end(), {{"QUANTITY", title},
+                               {"MEANING",
+                                "largest less smallest thickness at the end, over the recipe itself and "
+                                "the members of its error budget"},
+                               {"NODATA_MEANING", "outside the computed domain"}});
+    const fs::path file = folder / (std::string(map.name) + ".tif");
+    write_raster(file, map.raster.grid, map.raster.values, title, "m", std::move(facts));
+    writing.files.insert(writing.files.end(), {file, write_qgis_style(file, spread_style(map))});
+    group.layers.push_back({"S" + title.substr(1) + " [m]", file.filename().string(), false, spread_style(map)});
+  }
+  write_ground(writing);
+  write_project(writing, "budget", {group});
   return writing.files;
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/qgis/style.hpp"
+#include "postprocess/ensemble/budget_table.hpp"
 #include "postprocess/ensemble/ensemble.hpp"
 #include "postprocess/ensemble/member_rows.hpp"
 #include "postprocess/options/options.hpp"
@@ -18,6 +20,14 @@ namespace talus::postprocess {
 /// SCENE.qgs. Returns the files. Throws DataError.
 std::vector<std::filesystem::path> write_probability_maps(const std::filesystem::path& folder, const Ensemble& ensemble,
                                                           const Options& options);
+
+/// How a map of spread is drawn.
+RasterStyle spread_style(const SpreadMap& map);
+
+/// Writes the maps of spread of a budget, each with its style, the ground with its hillshade, outlines.gpkg (of the
+/// release) and SCENE-budget.qgs. Returns the files. Throws DataError.
+std::vector<std::filesystem::path> write_spread_maps(const std::filesystem::path& folder, const Ensemble& ensemble,
+                                                     const Options& options, const BudgetTable& table);
 
 /// Writes probability.nc: CF-1.8, thresholds and quantiles as coordinates, the table of members as a group. Throws
 /// DataError.

@@ -114,7 +114,6 @@ QgisProject project_of(const std::vector<fs::path>& maps, const Job& job) {
         {legend_name(name), map.filename().string(), shown, map_style(name, run.maps, options.classes)});
   }
   project.groups.push_back(std::move(results));
-  if (job.budget && !spread_maps(*job.budget).empty()) project.groups.push_back(spread_group(*job.budget));
   if (ProjectGroup flow = flow_group(run, options); !flow.layers.empty()) project.groups.push_back(std::move(flow));
   project.groups.push_back({"Ground", {{"Terrain before the failure", "terrain.tif", true, HillshadeStyle{}}}});
   project.layout = print_layout(job);

@@ -109,8 +109,6 @@ Layout define(Nc& nc, const Run& run, const NetcdfNotes& notes) {
   const int y = layout.axes.y.dimension, x = layout.axes.x.dimension;
   if (!grid.crs_wkt.empty()) define_crs(nc, grid);
   layout.maps = map_variables(run.maps);
-  for (const auto& [name, long_name, units, cell_methods, values] : notes.more)
-    layout.maps.push_back({name, long_name, units, cell_methods, values, true});
   for (const auto& map : layout.maps) layout.ids.push_back(define_map(nc, map, {y, x}, grid));
   if (!has_frames) return layout;
   layout.time = define_time(nc, time, notes.start);
@@ -140,10 +138,7 @@ class NetcdfWriter : public Writer {
   std::vector<std::string> names() const override { return {"maps/results.nc"}; }
   std::vector<std::string> outdated() const override { return {}; }
   Files write(const Job& job) const override {
-    NetcdfNotes notes{job.options.institution, job.command_line, job.options.start_time, {}};
-    if (job.budget)
-      for (const SpreadMap& map : spread_maps(*job.budget))
-        notes.more.push_back({map.name, map.long_name, "m", "area: mean", &map.raster->values});
+    const NetcdfNotes notes{job.options.institution, job.command_line, job.options.start_time};
     Files files{folder_of(job, "maps") / "results.nc"};
     write_netcdf(files.front(), job.run, notes);
     return files;

@@ -14,18 +14,11 @@ namespace talus::postprocess {
 /// this one.
 inline constexpr const char* nominal_start = "1970-01-01 00:00:00";
 
-/// A map that a NetCDF file holds beside those of its run, on their grid.
-struct NetcdfMap {
-  std::string name, long_name, units, cell_methods;
-  const std::vector<double>* values;  ///< NaN: none
-};
-
-/// What a NetCDF file says of its making, and what it holds besides.
+/// What a NetCDF file says of its making.
 struct NetcdfNotes {
   std::string institution;   ///< empty: "not stated"
   std::string command_line;  ///< for history
   std::string start{};       ///< when the failure began, UTC, "1903-04-29 04:10:00"; empty: not known
-  std::vector<NetcdfMap> more{};
 };
 
 /// Write `file` (aside, renamed): NetCDF-4 after CF-1.8, dimensions (time, y, x), y rising with row (south first).

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "postprocess/budget/budget_table.hpp"
 #include "postprocess/fields/classes.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/styles.hpp"
@@ -92,7 +91,6 @@ class Layers {
 
   Json build() {
     simulated();
-    if (input_.budget != nullptr) of_budget(*input_.budget);
     if (input_.hazard != nullptr) of_hazard(*input_.hazard);
     if (input_.survey) surveyed(*input_.survey);
     return std::move(list_);
@@ -121,7 +119,6 @@ class Layers {
 
   void simulated();
   void of_run(const MapField& field);
-  void of_budget(const BudgetTable& budget);
   void of_hazard(const Hazard& hazard);
   void surveyed(const Survey& survey);
   void difference(const Survey& survey, const OnSurveyGrid& simulated);
@@ -148,21 +145,6 @@ void Layers::simulated() {
   for (const MapField& field : map_fields) {
     if (field.optional) of_run(field);
   }
-}
-
-void Layers::of_budget(const BudgetTable& budget) {
-  const auto spread = [&](const char* id, const char* title, const Raster& map, const char* about) {
-    if (map.values.empty()) return;
-    add({id, title, "m", classes(thickness_limits({}, map.values), Ramp::sea), map, MergedCells::largest, 2, about});
-  };
-  spread("spread", "Spread of the deposit, all doubts", budget.spread,
-         "Largest less smallest thickness of the deposit over this run and those of the error budget.");
-  spread(
-      "spread_physical", "Spread, doubts about the slide", budget.spread_physical,
-      "Largest less smallest thickness of the deposit over this run and those with another friction, law or survey.");
-  spread(
-      "spread_numerical", "Spread, doubts about the computation", budget.spread_numerical,
-      "Largest less smallest thickness of the deposit over this run and those with other cells, steps or stiffness.");
 }
 
 void Layers::of_hazard(const Hazard& hazard) {

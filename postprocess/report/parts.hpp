@@ -38,7 +38,6 @@ Json profile_json(const ReportInput& input);
 Json series_json(const ReportInput& input);
 
 /// How far other runs differ from this one; null where none was made.
-Json budget_json(const ReportInput& input);
 
 /// What came to each building.
 Json hazard_json(const ReportInput& input);

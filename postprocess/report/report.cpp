@@ -93,10 +93,10 @@ class ReportWriter : public Writer {
   bool wanted(const Job& job) const override { return job.options.writes("report"); }
   std::vector<std::string> names() const override { return {"report.html"}; }
   Files write(const Job& job) const override {
-    return {write_file(job, "report.html",
-                       report_html({job.run, job.options, job.survey, job.score, job.thalweg, texts_of_stages(job),
-                                    text_if_there(job.file.parent_path() / "survey" / "survey.json"), job.file,
-                                    &job.hazard, job.budget ? &*job.budget : nullptr}))};
+    return {write_file(
+        job, "report.html",
+        report_html({job.run, job.options, job.survey, job.score, job.thalweg, texts_of_stages(job),
+                     text_if_there(job.file.parent_path() / "survey" / "survey.json"), job.file, &job.hazard}))};
   }
 };
 
@@ -125,11 +125,10 @@ std::string report_html(const ReportInput& input) {
   data["stages"] = stages_json(input.stages);
   data["profile"] = profile_json(input);
   data["series"] = series_json(input);
-  data["budget"] = budget_json(input);
   data["hazard"] = hazard_json(input);
   data["map"] = map_json(input);
   data["places"] = places_json(input);
-  for (const char* part : {"score", "surveys", "stages", "budget"}) leave_out_folders(data[part]);
+  for (const char* part : {"score", "surveys", "stages"}) leave_out_folders(data[part]);
   return filled_page(page_template(), input.run.summary.title, data);
 }
 

@@ -16,8 +16,6 @@
 
 namespace talus::postprocess {
 
-struct BudgetTable;
-
 /// What one stage left about itself.
 struct StageText {
   std::string stage;                ///< "preprocess"
@@ -35,7 +33,6 @@ struct ReportInput {
   std::optional<std::string> comparison;  ///< survey.json of talus-preprocess; empty: no two models were compared
   std::filesystem::path run_file;         ///< for what is read of the points: how much is in motion
   const Hazard* hazard = nullptr;
-  const BudgetTable* budget = nullptr;  ///< null: none was made
 };
 
 /// The page as the bytes of an HTML file: nothing in it is loaded from elsewhere. Throws DataError when a *.used.toml

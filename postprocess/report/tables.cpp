@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables of the report: scores, volumes, used recipes, buildings, places, error budget.
+// Tables of the report: scores, volumes, used recipes, buildings, places.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,6 @@
 #include "common/recipe/used.hpp"
 #include "common/run/mobility.hpp"
 #include "common/stage/findings.hpp"
-#include "postprocess/budget/budget_table.hpp"
 #include "postprocess/fields/release.hpp"
 #include "postprocess/hazard/hazard.hpp"
 #include "postprocess/report/parts.hpp"
@@ -168,60 +167,6 @@ Json places_json(const ReportInput& input) {
                     {"measured", extremes_at(place.words, input.run.history)}});
   }
   return list;
-}
-
-namespace {
-
-std::string accepted_words(const BudgetLine& line) {
-  std::string text;
-  for (const auto& [name, words] : line.run.accepted)
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name.substr(name.find('.') + 1), words);
-  return text;
-}
-
-Json budget_line_json(const BudgetLine& line) {
-  Json json{{"name", line.run.name},
-            {"kind", kind_name(line.row->kind)},
-            {"title", line.row->title},
-            {"words", line.run.words},
-            {"done", line.run.state == BudgetState::done},
-            {"failed", line.run.state == BudgetState::failed},
-            {"reason", line.run.reason},
-            {"values", line.run.values},
-            {"accepted", accepted_words(line)},
-            {"warnings", line.run.warnings},
-            {"elsewhere", finite_or_null(line.elsewhere)},
-            {"overlap", finite_or_null(line.overlap)},
-            {"run_out", finite_or_null(line.numbers.run_out)},
-            {"speed", finite_or_null(line.numbers.largest_speed)},
-            {"volume", finite_or_null(line.numbers.volume)},
-            {"steps", finite_or_null(line.numbers.steps)},
-            {"seconds", finite_or_null(line.numbers.wall_time)}};
-  json["scores"] = Json::array();
-  for (const double score : line.scores) json["scores"].push_back(finite_or_null(score));
-  return json;
-}
-
-}  // namespace
-
-Json budget_json(const ReportInput& input) {
-  if (input.budget == nullptr) return nullptr;
-  const BudgetTable& table = *input.budget;
-  Json json{{"run_out", finite_or_null(table.own.run_out)},
-            {"speed", finite_or_null(table.own.largest_speed)},
-            {"volume", finite_or_null(table.own.volume)},
-            {"steps", finite_or_null(table.own.steps)},
-            {"seconds", finite_or_null(table.own.wall_time)}};
-  json["scores"] = Json::array();
-  for (const BudgetScore& score : table.scores)
-    json["scores"].push_back({{"key", score.key},
-                              {"label", score.label},
-                              {"unit", score.unit},
-                              {"decimals", score.decimals},
-                              {"own", finite_or_null(score.own)}});
-  json["lines"] = Json::array();
-  for (const BudgetLine& line : table.lines) json["lines"].push_back(budget_line_json(line));
-  return json;
 }
 
 }  // namespace talus::postprocess

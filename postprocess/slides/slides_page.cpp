@@ -15,25 +15,20 @@ namespace {
 
 using Kind = EnsembleMapKind;
 
-/// The maps of one quantity, packed end to end.
+/// The maps of one quantity.
 Json stack_of(const EnsemblePageInput& input, const std::vector<EnsembleMap>& maps, const CellWindow& part,
               int factor) {
-  Json json{{"maps", Json::array()}};
-  std::vector<std::vector<double>> frames;
-  for (const EnsembleMap& map : maps) {
+  return packed_maps(maps.size(), [&](std::size_t n) {
     stop_if_interrupted("making slides.html");
+    const EnsembleMap& map = maps[n];
     const std::vector<double> values = slide_values(input.ensemble, map);
-    const Raster raster = coarse_map(input.ensemble, map, values, part, factor);
-    json["maps"].push_back({{"id", map.name},
-                            {"title", map.title},
-                            {"unit", unit_words(map.unit)},
-                            {"level", std::isfinite(map.level) ? Json(map.level) : Json()},
-                            {"classes", classes_json(map, values, {})}});
-    json["grid"] = grid_json(raster.grid);
-    frames.push_back(raster.values);
-  }
-  json["data"] = packed(frames);
-  return json;
+    return MapOnPage{map.name,
+                     map.title,
+                     unit_words(map.unit),
+                     map.level,
+                     style_of(map, values, {}),
+                     coarse_map(input.ensemble, map, values, part, factor)};
+  });
 }
 
 Json maps_json(const EnsemblePageInput& input, const CellWindow& part) {
@@ -118,9 +113,7 @@ Json outlines_json(const EnsemblePageInput& input, const CellWindow& part) {
 
 PageParts slide_page_parts(const EnsemblePageInput& input) {
   const CellWindow part = reached_cells(input.ensemble);
-  return {maps_json(input, part),
-          outlines_json(input, part),
-          {{"members", Json::array()}, {"counts", Json::array()}, {"of", 0}, {"mean_distance", 0}}};
+  return {maps_json(input, part), outlines_json(input, part), no_medoids()};
 }
 
 }  // namespace talus::postprocess

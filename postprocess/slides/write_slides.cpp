@@ -82,8 +82,8 @@ OutlineLayer layer_of(const std::string& name, const Ensemble& ensemble, const s
     stop_if_interrupted("writing slides.gpkg");
     const MapGrid grid = cut(counts.scene.grid, counts.windows[k]);
     const std::vector<std::uint8_t> cells = cells_of(footprints[k], grid.count());
-    layer.features.push_back({ensemble.table.slides->names[k], outline_above({grid, {cells.begin(), cells.end()}}, 0.5),
-                              numbers_of(rows, k)});
+    layer.features.push_back(
+        {ensemble.table.names[k], outline_above({grid, {cells.begin(), cells.end()}}, 0.5), numbers_of(rows, k)});
   }
   return layer;
 }

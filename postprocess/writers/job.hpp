@@ -9,7 +9,6 @@
 #include <string>
 
 #include "common/run/run_file.hpp"
-#include "postprocess/budget/budget_table.hpp"
 #include "postprocess/hazard/hazard.hpp"
 #include "postprocess/options/options.hpp"
 #include "postprocess/score/score.hpp"
@@ -25,7 +24,6 @@ struct Job {
   std::optional<Survey> survey{};
   Thalweg thalweg{};
   Hazard hazard{};
-  std::optional<BudgetTable> budget{};
   Score score{};
   std::filesystem::path out{};          ///< output folder
   std::string command_line{};           ///< for file metadata

@@ -110,11 +110,17 @@ std::string range_of(const MemberColumn& column) {
 }  // namespace
 
 MemberTable draw_members(const EnsembleOptions& o) {
-  check_design(o);
+  if (!o.is_budget()) check_design(o);
   MemberTable table;
   table.design = design_name(o.design);
   table.seed = o.seed;
-  if (o.design == Design::table) {
+  if (o.is_budget()) {
+    for (BudgetMember& member : budget_members(o.budget)) {
+      table.names.push_back(std::move(member.name));
+      table.rows.push_back(std::move(member.row));
+    }
+    table.count = static_cast<std::int64_t>(table.names.size());
+  } else if (o.design == Design::table) {
     take_listed(table, o.table);
   } else {
     std::vector<Marginal> marginals;
@@ -142,7 +148,7 @@ std::vector<std::string> as_lines(const MemberTable& table, const EnsembleOption
   if (table.sample_size > 0)
     first +=
         fmt::format(": {} (d + 2) of {} keys, of at most {}", table.sample_size, table.columns.size(), options.members);
-  else if (table.count != options.members)
+  else if (table.count != options.members && !options.is_budget())
     first += fmt::format(", which gives their number itself (members = {} in the recipe)", options.members);
   std::vector<std::string> lines{std::move(first)};
   for (const MemberColumn& column : table.columns) lines.push_back("  " + column.key + ": " + range_of(column));

@@ -14,9 +14,8 @@
 namespace talus::preprocess {
 namespace {
 
-[[noreturn]] void refuse_errors(const char* table, const std::string& what, const std::string& why,
-                                const std::string& mend) {
-  throw RecipeError(Fault{fmt::format("[{}] {}", table, what), why, mend});
+[[noreturn]] void refuse_errors(const std::string& what, const std::string& why, const std::string& mend) {
+  throw RecipeError(Fault{"[ensemble.elevation_error] " + what, why, mend});
 }
 
 /// A seed for each member and part: numbers of the generator SplitMix64 (Steele, Lea and Flood 2014).
@@ -51,28 +50,27 @@ double middle_of(std::vector<double> deviations) {
 }  // namespace
 
 ElevationErrors::ElevationErrors(const ElevationErrorOptions& options, const Options& of_base, const SceneRasters& base,
-                                 int seed, const char* table)
+                                 int seed)
     : seed_(static_cast<std::uint64_t>(seed)) {
   if (options.from_survey) {
-    take_survey(of_base, base, table);
+    take_survey(of_base, base);
     return;
   }
   if (options.thickness_deviation && of_base.way() == Way::laboratory)
-    refuse_errors(table, "thickness_deviation_m with a laboratory", "its boxes are not read from maps",
+    refuse_errors("thickness_deviation_m with a laboratory", "its boxes are not read from maps",
                   "Leave it out, or vary the boxes");
   if (options.terrain_deviation) terrain_ = {*options.terrain_deviation};
   if (options.thickness_deviation) thickness_ = {*options.thickness_deviation};
   add_part(base.bed.grid, 1, *options.range);
 }
 
-void ElevationErrors::take_survey(const Options& of_base, const SceneRasters& base, const char* table) {
+void ElevationErrors::take_survey(const Options& of_base, const SceneRasters& base) {
   if (!base.survey)
-    refuse_errors(table, "from_survey = true without two surveys",
-                  "the recipe gives no before_dem and after_dem to compare",
+    refuse_errors("from_survey = true without two surveys", "the recipe gives no before_dem and after_dem to compare",
                   "Give the numbers: terrain_deviation_m, thickness_deviation_m and range_m");
   const ErrorModel& errors = base.survey->errors;
   if (!errors.is_known())
-    refuse_errors(table, "from_survey = true, but the error of the survey is not known",
+    refuse_errors("from_survey = true, but the error of the survey is not known",
                   "there is too little stable ground, or both models are the same there",
                   "Give sigma_m in [preprocess.difference], or the numbers here: "
                   "terrain_deviation_m, thickness_deviation_m and range_m");

@@ -21,10 +21,8 @@ namespace talus::preprocess {
 class ElevationErrors {
  public:
   /// `base` is the scene whose errors they are. Throws RecipeError where from_survey finds no survey, or one whose
-  /// error is not known, and where boxes of a laboratory have no surveyed thickness; `table` is what messages call the
-  /// options.
-  ElevationErrors(const ElevationErrorOptions& options, const Options& of_base, const SceneRasters& base, int seed,
-                  const char* table = "ensemble.elevation_error");
+  /// error is not known, and where boxes of a laboratory have no surveyed thickness.
+  ElevationErrors(const ElevationErrorOptions& options, const Options& of_base, const SceneRasters& base, int seed);
 
   /// The method adds a member's errors: the ground's to bed and surface alike; the other to the released thickness
   /// where there is any, which stays at or above 0, the surface before following it. Fields depend on the seed and the
@@ -40,7 +38,7 @@ class ElevationErrors {
     double range;  ///< [m]; 0: cells err independently
     RandomField field;
   };
-  void take_survey(const Options& of_base, const SceneRasters& base, const char* table);
+  void take_survey(const Options& of_base, const SceneRasters& base);
   void add_part(const MapGrid& grid, double share, double range);
   void add_thickness(SceneRasters& scene, const std::vector<double>& field) const;
 

@@ -21,10 +21,13 @@ struct EnsemblePlan {
   MemberTable table;
   std::vector<std::optional<Options>> ground;             ///< [members]: of those that have ground of their own
   std::optional<ElevationErrors> errors = {};             ///< once the base scene is read
-  std::vector<std::vector<std::string>> own_values = {};  ///< [members]: "key=value" of [preprocess], of slides
+  std::vector<std::vector<std::string>> own_values = {};  ///< [members]: "key=value" of [preprocess], of slides and of
+                                                          ///< a budget; empty: as the table's columns say
 
   /// How many members get a domain of their own.
   std::int64_t own_domains() const;
+  /// The number of the random field by which a member's ground errs; none: it errs by none.
+  std::optional<std::int64_t> field_of(std::int64_t member) const;
 };
 
 /// Draws the members and checks their recipes; none where the recipe asks for no ensemble. Throws RecipeError and
@@ -47,6 +50,10 @@ struct EnsembleBase {
   std::vector<MapPlace> obstacles;
 };
 
+/// Gives the members of a budget their cells and errors of the survey, once the base scene is read, whose layers are so
+/// high [m]. A member that the scene does not allow is named in the table with the reason.
+void plan_budget_domains(const recipe::Recipe& recipe, EnsemblePlan& plan, const EnsembleBase& base, double layer);
+
 /// Refuses (RecipeError) a key of [preprocess] that changes nothing of the domain: between its smallest value and its
 /// largest, with the others as the recipe has them.
 void refuse_idle_keys(const recipe::Recipe& recipe, const EnsemblePlan& plan, const EnsembleBase& base);
@@ -54,11 +61,9 @@ void refuse_idle_keys(const recipe::Recipe& recipe, const EnsemblePlan& plan, co
 /// Writes members' domains, in parallel, then members.h5. Domains that are there and say that they were made of the
 /// same are left as they are. What an ensemble before left is removed. A member whose domain cannot be made is named
 /// in members.h5 and left out. Throws DataError: beyond failed_share of them; a member on another grid than the base.
-void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base);
-
-/// The same of slides, each on its window of the lattice. All domains that cannot be made are told. Returns the slide
-/// with the most material points.
-std::int64_t write_slides(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base);
+/// Of slides, each on its window of the lattice, all domains that cannot be made are told. Returns the slide with the
+/// most material points.
+std::int64_t write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base);
 
 /// Removes members.h5 and members' domains but those that `plan` has.
 void remove_members(const EnsemblePaths& paths, const EnsemblePlan* plan);

@@ -55,14 +55,45 @@ std::optional<EnsemblePlan> plan_ensemble(const recipe::Recipe& recipe, const Op
   EnsemblePlan plan{options, draw_members(options), {}};
   check_keys(plan.table, base);
   plan.ground = options_of_members(recipe, plan.table);
-  for (std::size_t k = 0; k < plan.ground.size(); ++k)
+  for (std::size_t k = 0; k < plan.ground.size() && !options.is_budget(); ++k)
     plan.table.own_domain[k] = plan.ground[k].has_value() || options.elevation_error.acts();
   return plan;
 }
 
+std::optional<std::int64_t> EnsemblePlan::field_of(std::int64_t member) const {
+  if (!errors) return std::nullopt;
+  if (table.rows.empty()) return member;
+  const auto own = table.rows.begin() + member;
+  return *own == survey_row ? std::optional(std::count(table.rows.begin(), own + 1, survey_row)) : std::nullopt;
+}
+
+void plan_budget_domains(const recipe::Recipe& recipe, EnsemblePlan& plan, const EnsembleBase& base, double layer) {
+  ElevationErrorOptions& error = plan.options.elevation_error;
+  error.from_survey = error.from_survey || !error.acts();
+  plan.own_values.resize(plan.table.rows.size());
+  for (std::size_t k = 0; k < plan.table.rows.size(); ++k) {
+    const double factor = plan.options.budget.cell_factor;
+    try {
+      if (plan.table.rows[k] == "cells") {
+        plan.own_values[k] = {fmt::format("preprocess.grid.spacing_m={}", factor * base.scene.bed.grid.cell),
+                              fmt::format("preprocess.grid.layer_height_m={}", factor * layer)};
+        plan.ground[k] = recipe.with(plan.own_values[k]).read<Options>("preprocess");
+      } else if (plan.table.rows[k] != survey_row) {
+        continue;
+      } else if (!plan.errors) {
+        plan.errors.emplace(error, base.options, base.scene, plan.options.seed);
+      }
+      plan.table.own_domain[k] = 1;
+    } catch (const RecipeError& refused) {
+      log_warning(fmt::format("{} is left out: {}", plan.table.names[k], refused.what()));
+      plan.table.failures.push_back({static_cast<std::int64_t>(k), refused.what()});
+    }
+  }
+}
+
 std::vector<std::filesystem::path> inputs_of(const EnsembleOptions& options) {
   std::vector<std::filesystem::path> inputs;
-  if (!options.on()) return inputs;
+  if (!options.on() || options.is_budget()) return inputs;
   if (!options.table.empty()) inputs.push_back(options.table);
   for (const VaryOptions& one : options.vary)
     if (!one.table.empty()) inputs.push_back(one.table);

@@ -57,13 +57,14 @@ class MemberDomains {
   void note_failure(std::int64_t member, std::string words);
   void say_failures() const;
   bool too_many_failed() const {
-    return static_cast<double>(failures_.size()) > plan_.options.failed_share * static_cast<double>(plan_.table.count);
+    return static_cast<double>(failures_.size()) > plan_.options.may_fail(plan_.table.count);
   }
   void say_end(double seconds) const;
 
   /// The values of [preprocess] by which a member differs.
   std::vector<std::string> values_of(std::int64_t member) const {
-    return plan_.table.slides ? plan_.own_values[static_cast<std::size_t>(member)] : ground_of(plan_.table, member);
+    return plan_.own_values.empty() ? ground_of(plan_.table, member)
+                                    : plan_.own_values[static_cast<std::size_t>(member)];
   }
   Facts inputs_of_member(std::int64_t member) const {
     const auto& own = plan_.ground[static_cast<std::size_t>(member)];
@@ -88,9 +89,9 @@ class MemberDomains {
 
 std::string MemberDomains::difference_of(std::int64_t member) const {
   std::string text = fmt::format("{}", fmt::join(values_of(member), "\n"));
-  if (plan_.errors)
+  if (const auto field = plan_.field_of(member))
     text += fmt::format("\n{}\nseed {}, member {}", recipe::to_toml(plan_.options.elevation_error, "error", false),
-                        plan_.table.seed, member);
+                        plan_.table.seed, *field);
   return text;
 }
 
@@ -106,7 +107,7 @@ Prepared MemberDomains::prepared(std::int64_t member) const {
   const auto& own = plan_.ground[static_cast<std::size_t>(member)];
   const Options& options = own ? *own : base_.options;
   SceneRasters scene = own ? read_scene(options, &base_.memory) : base_.scene;
-  if (plan_.errors) plan_.errors->apply(scene, member);
+  if (const auto field = plan_.field_of(member)) plan_.errors->apply(scene, *field);
   Options made_with = resolved(options);
   if (plan_.table.find(thickness_factor_key) != nullptr) made_with.thickness_factor = 1;
   return prepare(made_with, std::move(scene), Points::seeded);
@@ -164,7 +165,7 @@ void MemberDomains::make(std::int64_t member) {
     remove_for_good(file);  // of an ensemble before
     return;
   }
-  check_grid(member, *made);
+  if (plan_.table.rows.empty()) check_grid(member, *made);  // deposits of a budget may be on other cells
   points_[static_cast<std::size_t>(member)] = static_cast<std::int64_t>(made->point_count);
   if (plan_.table.slides)
     marks.emplace_back("slide", plan_.table.name_of(member));
@@ -240,8 +241,8 @@ void MemberDomains::say_failures() const {
     if (++said <= most)
       warn("member-without-domain", fmt::format("{} is left out: {}", plan_.table.name_of(member), words));
   if (said == 0) return;
-  warn("members-without-domain",
-       fmt::format("{} of {} members have no domain: talus-solve counts them as failed", said, plan_.table.count));
+  warn("members-without-domain", fmt::format("{} of {} members have no domain: talus-solve {}", said, plan_.table.count,
+                                             plan_.options.is_budget() ? "leaves them out" : "counts them as failed"));
   if (too_many_failed())
     throw DataError(
         Fault{fmt::format("[ensemble]: {} members have no domain, the first is {}", said, failures_.begin()->first),
@@ -294,44 +295,41 @@ void MemberDomains::make_all() {
   say_end(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
 }
 
-}  // namespace
-
-void write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base) {
-  const EnsemblePaths paths{context.out};
-  remove_members(paths, &plan);
-  MemberDomains domains(context, plan, base);
-  domains.make_all();
-  plan.table.failures = domains.failures();
-  plan.table.provenance = {{"version", version()},
-                           {"command", context.command_line},
-                           {recipe_of_members, recipe_mark(context.recipe, "ensemble")},
-                           {base_domain_id, fact(base.marks, domain_id)}};
-  if (plan.errors) plan.table.provenance.emplace_back(elevation_error_of_members, plan.errors->words());
-  write_member_table(paths.members(), plan.table);
-  context.results.push_back(paths.members());
-}
-
-std::int64_t write_slides(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base) {
-  const EnsemblePaths paths{context.out};
-  remove_members(paths, &plan);
-  MemberDomains domains(context, plan, base);
-  domains.make_all();
-  for (std::int64_t k = 0; k < plan.table.count; ++k)
-    plan.table.slides->domains.push_back(fact(domains.marks_of_member(k), domain_id));
-  const std::vector<std::int64_t> points = domains.points();
+/// Says how many material points slides have; the slide with the most.
+std::int64_t say_points(const std::vector<std::int64_t>& points, const MemberTable& table) {
   const auto largest = std::max_element(points.begin(), points.end());
   Sum all;
   for (const std::int64_t count : points) all.add(static_cast<double>(count));
   log_info(fmt::format("material points: {} in all, {} in {}, the most of a slide", grouped(all.value()),
-                       grouped(static_cast<double>(*largest)), plan.table.name_of(largest - points.begin())));
-  plan.table.provenance = {
-      {"version", version()},
-      {"command", context.command_line},
-      {recipe_of_members, recipe_mark(context.recipe, "slides")},
-      {base_domain_id, plan.table.slides->domains[static_cast<std::size_t>(largest - points.begin())]}};
-  write_member_table(paths.members(), plan.table);
-  context.results.push_back(paths.members());
+                       grouped(static_cast<double>(*largest)), table.name_of(largest - points.begin())));
   return largest - points.begin();
+}
+
+}  // namespace
+
+std::int64_t write_ensemble(StageContext& context, EnsemblePlan& plan, const EnsembleBase& base) {
+  const EnsemblePaths paths{context.out};
+  MemberTable& table = plan.table;
+  remove_members(paths, &plan);
+  MemberDomains domains(context, plan, base);
+  domains.make_all();
+  for (MemberWords& failure : domains.failures()) add_in_order(table.failures, std::move(failure));
+  std::int64_t largest = 0;
+  std::string of_base = fact(base.marks, domain_id);
+  if (table.slides) {
+    for (std::int64_t k = 0; k < table.count; ++k)
+      table.slides->domains.push_back(fact(domains.marks_of_member(k), domain_id));
+    largest = say_points(domains.points(), table);
+    of_base = table.slides->domains[static_cast<std::size_t>(largest)];
+  }
+  table.provenance = {{"version", version()},
+                      {"command", context.command_line},
+                      {recipe_of_members, recipe_mark(context.recipe, table.slides ? "slides" : "ensemble")},
+                      {base_domain_id, of_base}};
+  if (plan.errors) table.provenance.emplace_back(elevation_error_of_members, plan.errors->words());
+  write_member_table(paths.members(), table);
+  context.results.push_back(paths.members());
+  return largest;
 }
 
 }  // namespace talus::preprocess

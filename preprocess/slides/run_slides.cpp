@@ -70,7 +70,7 @@ SlidesMade make_slides(StageContext& context) {
   const EnsembleBase base{shared, {}, memory, checksums_of(inputs), {}, {}, {}};
   const EnsemblePaths paths{context.out};
   remove_for_good(context.out / "domain.vdb");
-  const std::int64_t largest = write_slides(context, plan, base);
+  const std::int64_t largest = write_ensemble(context, plan, base);
   const std::string& id = plan.table.slides->domains[static_cast<std::size_t>(largest)];
   return {inputs, {{"id", id}, {"slides", std::to_string(plan.table.count)}}, paths.domain(largest)};
 }

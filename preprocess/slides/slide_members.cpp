@@ -168,7 +168,7 @@ EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& sli
   refuse_own_keys(set);
   table.columns.insert(table.columns.end(), keys.begin(), keys.end());
   for (std::size_t k = 0; k < slides.size(); ++k) {
-    table.slides->names.push_back(slides[k].name);
+    table.names.push_back(slides[k].name);
     std::vector<std::string> values = values_of(slides[k], model, cut(windows.lattice, windows.windows[k]));
     for (std::string& value : table.values_of(static_cast<std::int64_t>(k), "preprocess."))
       values.push_back(std::move(value));

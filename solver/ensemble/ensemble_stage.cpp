@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,8 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
   for (const MemberWords& failure : e.table.failures) text += fmt::format("{} has no domain\n", failure.member);
   if (e.edge_fails) text += "who comes to an edge fails\n";
   if (e.options.keep_deposits) text += "deposits are kept\n";
+  if (e.options.is_budget()) text += recipe::to_toml(e.options.budget, "budget", false);
+  text += fact(e.table.provenance, elevation_error_of_members);
   if (e.table.slides)
     for (const std::string& id : e.table.slides->domains) text += id + "\n";
   text += fact(e.table.provenance, base_domain_id) + fmt::format(" {} {}", e.table.design, e.table.seed);
@@ -108,7 +111,10 @@ EnsembleCounts fresh_counts(const StageContext& context, const Ensemble& e, cons
              .release_thickness = {},
              .threshold = scene.threshold,
              .tallied = Tallied::largest};
-  EnsembleCounts counts = empty_counts(std::move(scene), e.table.count, e.part, e.options.thresholds);
+  const bool budget = e.options.is_budget();  // of which deposits are compared, and nothing is counted
+  if (budget) scene.tallied = Tallied::largest;
+  EnsembleCounts counts = empty_counts(std::move(scene), e.table.count, e.part,
+                                       budget ? ThresholdOptions{{}, {}, {}, {}, {}} : e.options.thresholds);
   counts.fingerprint = e.fingerprint;
   counts.provenance = domain.provenance;
   const Facts own = made_by(context, base);
@@ -178,19 +184,23 @@ void say_findings(const EnsembleCounts& counts, const MemberTable& table) {
 }
 
 /// This function says which members failed; it throws NumericalError where they are too many.
-void judge_failures(const EnsembleCounts& counts, double allowed_share, const MemberTable& table) {
-  for (std::size_t n = 0; n < counts.failures.size() && n < most_said; ++n)
-    warn("member-failed",
-         fmt::format("{} failed: {}", table.name_of(counts.failures[n].member), counts.failures[n].words));
-  const auto failed = static_cast<double>(counts.failures.size()), all = static_cast<double>(counts.part.count());
+void judge_failures(const EnsembleCounts& counts, const Ensemble& e) {
+  std::vector<MemberWords> failures = counts.failures;
+  std::erase_if(failures, [&](const MemberWords& one) {
+    return counts.states[static_cast<std::size_t>(one.member - e.part.first)] == MemberState::left_out;
+  });
+  for (std::size_t n = 0; n < failures.size() && n < most_said; ++n)
+    warn("member-failed", fmt::format("{} failed: {}", e.table.name_of(failures[n].member), failures[n].words));
+  const auto failed = static_cast<double>(failures.size());
   if (failed == 0) return;
-  warn("members-failed", fmt::format("{} of {} members failed; the counts are without them", failed, all));
-  if (failed > allowed_share * all)
-    throw NumericalError({fmt::format("{:.0f} of {:.0f} members failed, the first is {}", failed, all,
-                                      table.name_of(counts.failures.front().member)),
-                          fmt::format("[{}] failed_share allows {:g} of them: {}", table.slides ? "slides" : "ensemble",
-                                      allowed_share, counts.failures.front().words),
-                          "Mend what makes them fail, narrow the distributions, or raise failed_share"});
+  warn("members-failed", fmt::format("{} of {} members failed; the counts are without them", failed, e.part.count()));
+  if (e.options.is_budget() ? counts.count(MemberState::counted) > 0 : failed <= e.options.may_fail(e.part.count()))
+    return;
+  throw NumericalError({fmt::format("{:.0f} of {} members failed, the first is {}", failed, e.part.count(),
+                                    e.table.name_of(failures.front().member)),
+                        fmt::format("[{}] failed_share allows {:g} of them: {}", e.table.slides ? "slides" : "ensemble",
+                                    e.options.failed_share, failures.front().words),
+                        "Mend what makes them fail, narrow the distributions, or raise failed_share"});
 }
 
 /// This function names the members that came to the edge of their domain.
@@ -267,7 +277,8 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
   const std::vector<AnyDevice> each = one_of_each(flags.on);
   const MemberCost cost =
       cost_of_member(draft_plan(base_domain, members.base(), Settle::done), each.front(), flags.plan);
-  const InFlight flight = in_flight(e.part.count(), flags.at_a_time, cost.bytes, each);
+  const double finer = e.options.is_budget() ? std::max(1.0, std::pow(e.options.budget.cell_factor, -3.0)) : 1;
+  const InFlight flight = in_flight(e.part.count(), flags.at_a_time, finer * cost.bytes, each);
   log_info(fmt::format("{} members ({} to {}), {} at a time: {}", e.part.count(), e.part.first, e.part.end - 1,
                        flight.count, flight.reason));
   if (flags.plan) {
@@ -276,15 +287,17 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
   }
   if (context.check_only) return {};
   EnsembleCounts counts = fresh_counts(context, e, domain, base);
+  members.note_changes(counts);
   take_up(e, flags, counts);
-  counts.keeps_deposits = e.options.keep_deposits;
+  counts.other_cells = e.options.is_budget();
+  counts.deposit_quantum = e.options.is_budget() ? 1e-6 : e.options.keep_deposits ? 1e-3 : 0;
   const auto unfinished = e.paths.unfinished(e.part);
   const OwnEnd saving("finished members are saved");
   keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);
   const bool is_whole = count_members(e, members, devices_for(flight.count, flags.on), counts);
   say_findings(counts, e.table);
   if (!is_whole) stop(counts, unfinished);
-  judge_failures(counts, e.options.failed_share, e.table);
+  judge_failures(counts, e);
   say_edges(counts, e.table);
   if (e.part.count() == counts.members) warn_of_unused("solve", base.accept, counts.findings);
   write_counts(e.counts, counts);

@@ -29,7 +29,8 @@ bool is_kept(const EnsembleOptions& options, std::int64_t member) {
 void keep_runs(StageContext& context, const Members& members, const EnsembleOptions& options,
                const EnsemblePaths& paths, const AnyDevice& device, const EnsembleCounts& counts) {
   for (std::int64_t k = counts.part.first; k < counts.part.end; ++k) {
-    if (!is_kept(options, k)) continue;
+    const MemberState state = counts.states[static_cast<std::size_t>(k - counts.part.first)];
+    if (!is_kept(options, k) || state == MemberState::left_out) continue;
     const RunPaths files(paths.run_folder(k));
     const std::string mark = fmt::format("{} {}", counts.fingerprint, k);
     if (std::filesystem::exists(files.run) && fact(run_facts(files.run), kept_member) == mark) {

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "common/domain/domain_facts.hpp"
 #include "common/domain/scale_release.hpp"
-#include "common/ensemble/counts.hpp"
+#include "common/ensemble/options.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/plan/named_places.hpp"
 #include "solver/run/run_inputs.hpp"
@@ -42,8 +44,9 @@ bool is_countable(const MapGrid& own, const MemberTable& table, std::int64_t mem
 }
 
 SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
-  if (settled.stiffness) options = with_stiffness(std::move(options), *settled.stiffness);
-  if (settled.steps) options = with_steps(std::move(options), *settled.steps);
+  if (settled.stiffness && leaves_stiffness(options)) options = with_stiffness(std::move(options), *settled.stiffness);
+  if (settled.steps && options.integrator == Integrator::automatic)
+    options = with_steps(std::move(options), *settled.steps);
   return options;
 }
 
@@ -74,7 +77,34 @@ Members::Members(const recipe::Recipe& recipe, const MemberTable& table, const E
     : recipe_(recipe), table_(table), paths_(paths), domain_(std::move(domain)), settles_each_(varies_settling(table)) {
   Plan base = settled_base(domain_, options);
   if (!settles_each_) settled_ = settled_once(base);
+  vary(base);
   base_ = std::move(base.options);
+}
+
+void Members::vary(const Plan& base) {
+  if (table_.rows.empty()) return;
+  variations_ = variations_of(table_, base, ensemble_of(recipe_).budget, [&](const std::vector<std::string>& values) {
+    return settled_by(settled_, with_places(solver::options_of(recipe_.with(values), paths_.out), base.domain->places));
+  });
+  constexpr std::string_view of_domain = "ensemble.";  // facts of what a domain was made with
+  for (std::int64_t member = 0; member < table_.count; ++member) {
+    Variation& one = variations_[static_cast<std::size_t>(member)];
+    if (const MemberWords* failure = table_.failure_of(member)) one.left_out = failure->words;
+    const std::filesystem::path file = paths_.domain(member);
+    if (one.left_out || table_.own_domain[static_cast<std::size_t>(member)] == 0 || !std::filesystem::exists(file))
+      continue;
+    for (const auto& [name, value] : domain_facts(file))
+      if (name.starts_with("ensemble.preprocess.")) one.values.push_back(name.substr(of_domain.size()) + "=" + value);
+  }
+}
+
+void Members::note_changes(EnsembleCounts& counts) const {
+  for (std::int64_t member = counts.part.first; member < counts.part.end && !variations_.empty(); ++member) {
+    const Variation& one = variations_[static_cast<std::size_t>(member)];
+    if (one.left_out) counts.leave_out(member, *one.left_out);
+    if (!one.words.empty())
+      add_in_order(counts.changes, {member, fmt::format("{}\n{}", one.words, fmt::join(one.values, "\n"))});
+  }
 }
 
 SolveOptions Members::options_of(std::int64_t member) const {
@@ -88,6 +118,12 @@ SolveOptions Members::options_of(std::int64_t member) const {
 }
 
 void Members::check() const {
+  for (std::size_t k = 0; k < variations_.size(); ++k) {
+    const Variation& one = variations_[k];
+    if (!one.words.empty())
+      log_info(fmt::format("  {:<14} {}", table_.names[k], one.left_out ? "left out: " + *one.left_out : one.words));
+  }
+  if (!variations_.empty()) return;  // they have been read
   for (std::int64_t member = 0; member < table_.count; ++member) {
     stop_if_interrupted("checking the members");
     options_of(member);
@@ -98,9 +134,12 @@ std::shared_ptr<const Domain> Members::domain_of(std::int64_t member) const {
   if (const MemberWords* failure = table_.failure_of(member)) throw DataError({failure->words, "", ""});
   const bool own = table_.own_domain.at(static_cast<std::size_t>(member)) != 0;
   const MemberColumn* factor = table_.find(thickness_factor_key);
-  if (!own && factor == nullptr) return domain_;
+  const BedChange* bed = variations_.empty() ? nullptr : &variations_[static_cast<std::size_t>(member)].change_bed;
+  const bool bed_changes = bed != nullptr && *bed;
+  if (!own && factor == nullptr && !bed_changes) return domain_;
   Domain domain = own ? read_domain(paths_.domain(member)) : *domain_;
-  if (own && !is_countable(domain.grid, table_, member, domain_->grid))
+  if (bed_changes) domain = with_bed(std::move(domain), *bed);
+  if (own && variations_.empty() && !is_countable(domain.grid, table_, member, domain_->grid))
     throw DataError(
         {paths_.domain(member).string() + (table_.slides ? ": its grid is not the window that members.h5 has for it"
                                                          : ": its grid is not that of the base domain"),
@@ -112,6 +151,8 @@ std::shared_ptr<const Domain> Members::domain_of(std::int64_t member) const {
 
 std::shared_ptr<const Plan> Members::plan(std::int64_t member) const {
   const std::shared_ptr<const Domain> domain = domain_of(member);
+  if (!variations_.empty())
+    return solver::plan(domain, variations_[static_cast<std::size_t>(member)].options, Settle::done);
   SolveOptions options;
   {
     const std::lock_guard<std::mutex> one(reading_);

@@ -10,9 +10,11 @@
 #include <optional>
 
 #include "common/domain/domain.hpp"
+#include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
 #include "common/ensemble/names.hpp"
 #include "common/recipe/recipe.hpp"
+#include "solver/ensemble/variations.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/plan/plan.hpp"
 #include "solver/plan/step_choice.hpp"
@@ -31,7 +33,7 @@ class Members {
  public:
   /// The constructor keeps references to recipe and table. `base` are the options of the recipe itself,
   /// and what is left to the program is settled for all members by them, unless a key that bears on it varies. It
-  /// throws RecipeError where a varied key would have no effect.
+  /// throws RecipeError where a varied key would have no effect, and where a budget sets what cannot be.
   Members(const recipe::Recipe& recipe, const MemberTable& table, const EnsemblePaths& paths,
           std::shared_ptr<const Domain> domain, const SolveOptions& base);
 
@@ -45,10 +47,13 @@ class Members {
   const SolveOptions& base() const { return base_; }
   /// Whether what is left to the program is settled for each member by itself.
   bool settles_each() const { return settles_each_; }
+  /// This method notes in counts what the members of a budget change, and leaves those out that are not to be run.
+  void note_changes(EnsembleCounts& counts) const;
 
  private:
   SolveOptions options_of(std::int64_t member) const;
   std::shared_ptr<const Domain> domain_of(std::int64_t member) const;
+  void vary(const Plan& base);
 
   const recipe::Recipe& recipe_;
   const MemberTable& table_;
@@ -57,7 +62,8 @@ class Members {
   bool settles_each_;
   SettledOnce settled_;
   SolveOptions base_;
-  mutable std::mutex reading_;  ///< recipes are read by one thread at a time
+  std::vector<Variation> variations_;  ///< [members] of a budget; else empty
+  mutable std::mutex reading_;         ///< recipes are read by one thread at a time
 };
 
 }  // namespace talus::solver

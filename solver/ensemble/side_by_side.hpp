@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs side by side: the members of an ensemble, the runs of an error budget.
+// Runs side by side: the members of an ensemble.
 #pragma once
 
 #include <cstddef>

@@ -67,7 +67,7 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const std::share
   const Findings found("solve");
   std::vector<std::string> accept = options.accept;
   const bool accepts_torn = std::erase(accept, torn_body) > 0;  // of which the run itself tells
-  if (!flags.is_varied) warn_of_unused("solve", accept, plan->findings);
+  warn_of_unused("solve", accept, plan->findings);
   if (flags.plan) {
     const History recorded(options, plan->scene);  // refuses what cannot be recorded
     for (const std::string& text : describe_plan(*plan, device)) log_info(text);
@@ -89,7 +89,7 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const std::share
       simulation.run(context.recipe.scene_name(), context.recipe.title(), facts, findings_so_far());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
-  if (!flags.is_varied && accepts_torn) warn_of_unused("solve", {torn_body}, summary.findings);
+  if (accepts_torn) warn_of_unused("solve", {torn_body}, summary.findings);
   if (flags.profile) report_profile(summary, device, context.out);
   context.results.push_back(paths.run);
   return facts_of(summary);

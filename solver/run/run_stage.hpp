@@ -21,7 +21,6 @@ struct RunFlags {
   bool resume = false;                                ///< go on where there is something to go on from
   bool profile = false;                               ///< measure where the time goes
   bool plan = false;                                  ///< say what would run, and run nothing
-  bool is_varied = false;  ///< runs of a budget follow, for which the recipe may accept what this one never meets
 };
 
 /// The checkpoint that the flags go on from; none where they begin.

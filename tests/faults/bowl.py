@@ -53,11 +53,6 @@ key = "preprocess.thickness_factor"
 low = 0.9
 high = 1.1
 """,
-    "budget": """
-[budget]
-make = true
-leave_out = ["transfer", "integrator", "strength", "survey"]
-""",
     "slides": """
 [slides]
 outlines = "areas.geojson"
@@ -94,8 +89,8 @@ def areas():
 
 def make_scene(folder, layer=2.0, end=1.0, scene="run"):
     """The scene of tests/pipeline/scene.sh in `folder`: elevation models and recipe.toml. A block of 4 x 4 cells, 4 m
-    thick, fails in a bowl; `layer` [m], `end` [s]. The single run has a wall in it; the other scenes are an ensemble,
-    an error budget, and three slides over the model."""
+    thick, fails in a bowl; `layer` [m], `end` [s]. The single run has a wall in it; the other scenes are an ensemble
+    and three slides over the model."""
     folder.mkdir(parents=True, exist_ok=True)
     script = pathlib.Path(__file__).resolve().parent.parent / "pipeline" / "scene.sh"
     asked_for = {name: str(folder.resolve()) for name in ("TALUS_SOURCE", "TALUS_BUILD", "TALUS_SCRATCH")}
@@ -115,7 +110,7 @@ def make_scene(folder, layer=2.0, end=1.0, scene="run"):
     (folder / "recipe.toml").write_text(recipe)
 
 
-GOES_ON = re.compile(r"(^|/)(checkpoint|unfinished|budget\.unfinished)[^/]*\.h5$")
+GOES_ON = re.compile(r"(^|/)(checkpoint|unfinished)[^/]*\.h5$")
 
 
 def is_final(name):

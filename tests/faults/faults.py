@@ -128,9 +128,9 @@ class Bench:
     def is_of(stage, name):
         if stage == "preprocess":
             names = ("domain.vdb", "obstacles.vdb", "preprocess.used.toml", "members.h5")
-            return name.startswith(("survey/", "budget/")) or name.endswith("domain.vdb") or name in names
+            return name.startswith("survey/") or name.endswith("domain.vdb") or name in names
         if stage == "solve":
-            return name.endswith("run.h5") or name in ("solve.used.toml", "counts.h5", "budget.h5")
+            return name.endswith("run.h5") or name in ("solve.used.toml", "counts.h5")
         return not Bench.is_of("preprocess", name) and not Bench.is_of("solve", name)
 
     def places(self, total, few, many):

@@ -145,7 +145,7 @@ speed_m_s = 4.0
 TOML
 }
 
-test_members_of_an_ensemble_and_runs_of_a_budget_know_the_places() {
+test_members_of_an_ensemble_and_of_a_budget_know_the_places() {
   inflow_scene
   cp recipe.toml alone.toml
   cat >>recipe.toml <<'TOML'
@@ -163,11 +163,11 @@ TOML
   expect_exit 0 solve
   expect_words "2 members counted, 0 failed"
   cp alone.toml recipe.toml
-  printf '\n[budget]\nleave_out = ["cells", "modulus"]\n\n[[budget.run]]\nname = "half"\n%s\n' \
-    'set = ["solve.inflow[0].scale=0.5"]' >>recipe.toml
+  printf '\n[ensemble]\ndesign = "budget"\n[ensemble.budget]\nleave_out = ["cells", "modulus"]\n%s\n%s\n%s\n' \
+    '[[ensemble.budget.run]]' 'name = "half"' 'set = ["solve.inflow[0].scale=0.5"]' >>recipe.toml
   expect_exit 0 "$bin/talus-preprocess" recipe.toml --out budget
-  expect_exit 0 "$bin/talus-solve" recipe.toml --out budget --on cpu --budget
-  expect_words " runs done, 0 failed"
+  expect_exit 0 "$bin/talus-solve" recipe.toml --out budget --on cpu
+  expect_words " members counted, 0 failed"
 }
 
 test_a_run_at_places_goes_on_from_its_checkpoint() {

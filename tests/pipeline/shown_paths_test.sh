@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What ensembles, error budgets and many slides say on stderr calls files as the user did, and never by the folders of
-# this machine. Single runs: wrong_input_test.sh and the unit tests ShownPaths.
+# What ensembles and many slides say on stderr calls files as the user did, and never by the folders of this machine.
+# Single runs: wrong_input_test.sh and the unit tests ShownPaths.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 
 # said CODE COMMAND...: it ends with this code, and says nothing of where this machine keeps the scene.
@@ -35,12 +35,6 @@ test_an_ensemble_says_no_absolute_path() {
   sed -i 's/^after_dem.*/after_dem = "gone.asc"/' recipe.toml
   said 3 preprocess
   expect_words 'gone.asc'
-}
-
-test_a_budget_says_no_absolute_path() {
-  scene
-  printf '\n[budget]\nmake = true\nsurvey_draws = 1\nleave_out = ["cells", "transfer", "integrator"]\n' >>recipe.toml
-  stages_say out/budget.h5 out/domain.vdb
 }
 
 test_slides_say_no_absolute_path() {

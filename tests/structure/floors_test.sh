@@ -9,18 +9,18 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 # named by its path; '.' is the stage's own folder.
 floors() {
   case $1 in
-    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' budget ;;
+    common) printf '%s\n' . 'map recipe' stage 'domain run gis' 'ensemble qgis' ;;
     preprocess)
       printf '%s\n' 'options regions' 'terrain obstacle' 'survey release' particles laboratory scene output ensemble \
-        budget slides .
+        slides .
       ;;
     solver)
       printf '%s\n' parallel state material grid transfer boundary elements linear/krylov linear/operator \
         linear/preconditioner linear/direct integrator 'explicit column_implicit implicit' options scene plan \
-        run/recorders run ensemble budget .
+        run/recorders run ensemble .
       ;;
     postprocess)
-      printf '%s\n' options survey fields hazard score budget writers maps 'picture three_d' report \
+      printf '%s\n' options survey fields hazard score writers maps 'picture three_d' report \
         'ensemble compare' slides .
       ;;
   esac

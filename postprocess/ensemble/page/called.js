@@ -10,18 +10,22 @@ export function called(data) {
     : { one: "member", many: "members", table: "members.csv" };
 }
 
-/** "Member 12", or the name of a slide. */
+/** "Member 12", or its name. */
 export function nameOf(data, member) {
-  const names = data.run.slides ? data.members.columns.find((column) => column.name === "name") : null;
+  const names = data.members.columns.find((column) => column.kind === "input" && column.name === "name");
   return names ? names.words[names.values[member]] : `Member ${number(member)}`;
 }
 
-/** The fixed words of the page, where its runs are slides: no sample, so no sensitivity and no convergence. */
-export function callSlides() {
+/** What only a sample has: sensitivity and convergence. */
+export function dropSampled() {
   for (const part of ["sensitivity", "convergence"]) {
     document.getElementById(`${part}-section`).remove();
     document.querySelector(`nav a[href="#${part}-section"]`).remove();
   }
+}
+
+/** The fixed words of the page, where its runs are slides. */
+export function callSlides() {
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) {
     const { currentNode: text } = texts;

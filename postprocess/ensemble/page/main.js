@@ -5,7 +5,8 @@ import { h, number } from "../../report/page/format.js";
 import { sample } from "../../report/page/lines.js";
 import { ReportMap } from "../../report/page/map.js";
 import { drawParameters, drawVersions } from "../../report/page/tables.js";
-import { called, callSlides, nameOf } from "./called.js";
+import { drawBudget } from "./budget.js";
+import { called, callSlides, dropSampled, nameOf } from "./called.js";
 import { columnTitle, valueWords } from "./columns.js";
 import { MapPanel, readMaps } from "./map_panel.js";
 import { mostDrawn, Outlines, styles } from "./outlines.js";
@@ -107,7 +108,7 @@ function notes(data, outlines) {
   if (map.coarsest > 1)
     parts.push(
       `Maps coarsened for this page, ${map.coarsest} \u00d7 ${map.coarsest} cells in one, of which the largest value ` +
-        `is kept; the GeoTIFFs in ${data.run.slides ? "slides" : "probability"}/ are whole.`,
+        `is kept; the GeoTIFFs in ${data.run.slides ? "slides" : data.budget ? "budget" : "probability"}/ are whole.`,
     );
   const held = data.outlines.members.length;
   if (held < run.counted)
@@ -128,14 +129,16 @@ function notes(data, outlines) {
 
 async function draw() {
   const data = JSON.parse(document.getElementById("data").textContent);
+  if (!data.run.sampled) dropSampled();
   if (data.run.slides) callSlides();
+  drawBudget(data);
   drawSummary(data);
   drawMethod(data);
   drawParameters(data);
   drawVersions(data);
   const selection = new Selection(data.members);
   const charts = {
-    ...(data.run.slides ? {} : { sensitivity: new Sensitivity(data), convergence: new Convergence(data) }),
+    ...(!data.run.sampled ? {} : { sensitivity: new Sensitivity(data), convergence: new Convergence(data) }),
     table: new MemberTable(data, selection),
     scatter: new Scatter(data, selection),
     histogram: new Histogram(data, selection),

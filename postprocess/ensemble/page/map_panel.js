@@ -181,7 +181,9 @@ export class MapPanel {
       }[this.layer] ??
       (run.slides
         ? `Of ${number(run.counted)} counted slides; nothing is drawn where none came.`
-        : "Over all counted members; where one did not come, it counts as 0 (times: as never).");
+        : this.data.budget
+          ? "Largest less smallest thickness of the deposit over the recipe itself and members that differ in one thing."
+          : "Over all counted members; where one did not come, it counts as 0 (times: as never).");
     document
       .getElementById("legend")
       .replaceChildren(

@@ -6,7 +6,7 @@ import { called } from "./called.js";
 import { columnTitle, valueWords } from "./columns.js";
 
 const rowsOnPage = 100,
-  states = ["waiting", "counted", "failed"];
+  states = ["waiting", "counted", "failed", "left out"];
 
 export class MemberTable {
   constructor(data, selection) {

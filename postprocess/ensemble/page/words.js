@@ -15,6 +15,7 @@ const designs = {
   "one-at-a-time": "one key at a time",
   sensitivity: "a design for Sobol indices",
   table: "a table",
+  budget: "single changes of the recipe",
 };
 
 function quantile(values, share) {
@@ -38,7 +39,7 @@ export function drawSummary(data) {
   const parts = [`${number(run.counted)} of ${number(run.members)} ${many} are counted`];
   if (run.failed) parts.push(`${number(run.failed)} failed and are left out`);
   if (run.waiting) parts.push(`${number(run.waiting)} have not been run`);
-  if (run.slides) inputs.splice(0, 1); // the name
+  if (!run.sampled) inputs.splice(0, 1); // the name
   if (run.elevation_error) inputs.push(run.elevation_error);
   const varied = inputs.length ? ` What varies: ${inputs.join(", ")}.` : "";
   document.getElementById("headline").textContent =
@@ -57,7 +58,7 @@ export function drawSummary(data) {
   box.append(keyNumber(run.slides ? "Slides counted" : "Members counted", counted,
     run.failed ? `${number(run.failed)} failed` : null));
   const error = `\u00b1${number(100 * standardError(0.5, run.draws), 1)} %`;
-  if (!run.slides) box.append(keyNumber("Error of a probability", error,
+  if (run.sampled) box.append(keyNumber("Error of a probability", error,
     "of one half, one sigma"));
   for (const name of keyResults) {
     const column = members.columns.find((one) => one.name === name);
@@ -83,11 +84,23 @@ function slideMethod(run) {
   ];
 }
 
+function budgetMethod(run) {
+  return [
+    item("Every member is a whole run of the model. Each but the first, which is the recipe itself, differs from it in "
+      + "one thing; what the recipe leaves to the program is settled once, for all of them."),
+    item("A map of spread has, in each cell, the largest less the smallest thickness of the deposit over these runs. It "
+      + "is no probability."),
+    item(`Outlines are of cells that were thicker than ${run.threshold} m; of a run on other cells, by the centres of `
+      + "these cells."),
+  ];
+}
+
 export function drawMethod(data) {
   const { run } = data,
     box = document.getElementById("method");
   const list = h("ul", { class: "plain-list" });
   if (run.slides) list.append(...slideMethod(run));
+  else if (data.budget) list.append(...budgetMethod(run));
   else list.append(
     item(run.share.meaning),
     item(`${run.share.error} It is half the width of Wilson\u2019s score interval at one sigma, which is not zero `

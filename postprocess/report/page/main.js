@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report: reads its data and fills the page.
-import { drawBudget } from "./budget.js";
 import { readMap } from "./decode.js";
 import { drawProfile, drawSeries } from "./curves.js";
 import { drawHazard } from "./hazard.js";
@@ -59,7 +58,6 @@ async function draw() {
     view = {};
   drawSummary(data);
   drawPlaceList(data);
-  drawBudget(data);
   drawFindings(data);
   drawScores(data);
   drawHazard(data);

@@ -110,12 +110,13 @@ TEST(CountsFile, comes_back_as_it_was_written) {
 }
 
 TEST(CountsFile, keeps_deposits_of_members_where_that_is_asked_for) {
+  constexpr double quantum = 1e-3;
   const test::Scratch scratch;
   const MemberTable table = test::ensemble_table(12);
   const auto part = [&](const MemberRange& range, bool keeps) {
     EnsembleCounts counts = empty_counts(test::ensemble_scene(), 12, range, {});
     counts.fingerprint = "f";
-    counts.keeps_deposits = keeps;
+    counts.deposit_quantum = keeps ? quantum : 0;
     for (std::int64_t k = range.first; k < range.end; ++k)
       if (k == 4) {
         counts.fail(k, "too fast");
@@ -135,20 +136,50 @@ TEST(CountsFile, keeps_deposits_of_members_where_that_is_asked_for) {
     const std::vector<double> thickness = kept.thickness(cells);
     double most = 0;
     for (std::size_t c = 0; c < cells; ++c) {
-      EXPECT_NEAR(thickness[c], maps.deposit_thickness[c], 0.5001 * KeptThickness::quantum);
+      EXPECT_NEAR(thickness[c], maps.deposit_thickness[c], 0.5001 * quantum);
       most = std::max(most, thickness[c]);
     }
     EXPECT_GT(most, 0.1);
   }
   EXPECT_FALSE(all.deposit_thickness[4].kept()) << "failed";
   EXPECT_FALSE(all.deposit_thickness[7].kept()) << "of a part that keeps none";
-  EXPECT_EQ(keep_thickness(std::vector<double>(9, 0.0)).thickness(9), std::vector<double>(9, 0.0));
+  EXPECT_EQ(keep_thickness(std::vector<double>(9, 0.0), quantum).thickness(9), std::vector<double>(9, 0.0));
+}
+
+TEST(CountsFile, holds_members_on_other_cells_and_those_left_out) {
+  const test::Scratch scratch;
+  EnsembleCounts counts = empty_counts(test::ensemble_scene(), 4, {0, 4}, {});
+  counts.deposit_quantum = 1e-6;
+  counts.other_cells = true;
+  const RunMaps maps = test::member_maps(counts.scene, 12, 2);
+  RunMaps coarse = test::member_maps(counts.scene, 12, 2);  // the same lower left quarter, in cells twice as large
+  coarse.grid.cell *= 2;
+  counts.add(0, maps, {});
+  counts.add(1, coarse, {});
+  counts.leave_out(2, "no survey");
+  counts.leave_out(3, "");
+  counts.changes = {{1, "cells twice as large\nkey=1"}};
+  write_counts(scratch / "counts.h5", counts);
+  const EnsembleCounts read = read_counts(scratch / "counts.h5");
+  EXPECT_EQ(read.states, counts.states);
+  EXPECT_EQ(read.failures, counts.failures);
+  EXPECT_EQ(read.changes, counts.changes);
+  EXPECT_EQ(read.grid_of(0).cell, counts.scene.grid.cell);
+  EXPECT_EQ(read.grid_of(1).cell, coarse.grid.cell);
+  const std::vector<double> kept = read.deposit_thickness[1].thickness(coarse.grid.count());
+  const std::vector<std::uint8_t> covered = cells_of(read.deposit[1], counts.scene.grid.count());
+  for (int row = 0; row < counts.scene.grid.rows; ++row)
+    for (int column = 0; column < counts.scene.grid.columns; ++column) {
+      const std::size_t fine = counts.scene.grid.index(column, row), of = coarse.grid.index(column / 2, row / 2);
+      EXPECT_NEAR(kept[of], std::fmax(coarse.deposit_thickness[of], 0), 1e-6);
+      EXPECT_EQ(covered[fine] != 0, coarse.deposit_thickness[of] > counts.scene.threshold);
+    }
 }
 
 TEST(CountsFile, whose_deposits_are_not_of_their_footprints_is_refused) {
   const test::Scratch scratch;
   EnsembleCounts counts = empty_counts(test::ensemble_scene(), 1, {0, 1}, {});
-  counts.keeps_deposits = true;
+  counts.deposit_quantum = 1e-3;
   counts.add(0, test::member_maps(counts.scene, 12, 2), {});
   counts.deposit_thickness[0].values.pop_back();
   write_counts(scratch / "counts.h5", counts);

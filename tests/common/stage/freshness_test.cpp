@@ -23,7 +23,6 @@ struct Freshness : testing::Test {
   std::string recipe = "[scene]\ntitle = \"T\"\n[solve]\nsteps = 5\nterrain = \"dem.txt\"\n";
   std::vector<std::string> set;
   fs::path beside;
-  bool with_budget = false;
   int runs = 0;
   std::vector<std::string> said;
   Context own{[this](LogLevel, const std::string& text) { said.push_back(text); }};
@@ -36,8 +35,7 @@ struct Freshness : testing::Test {
       .template_toml = {},
       .used_toml =
           [this](const recipe::Recipe& read) {
-            return recipe::to_toml(read.read<SampleOptions>("solve"), "solve", false) +
-                   (with_budget ? "[budget]\nmake = true\n" : "");
+            return recipe::to_toml(read.read<SampleOptions>("solve"), "solve", false);
           },
       .depends =
           [this](const StageContext& context) {
@@ -114,15 +112,6 @@ TEST_F(Freshness, a_changed_table_is_named_with_its_keys) {
   EXPECT_EQ(reason(), "[solve] has changed: material.friction_angle_deg") << "not the key that the stage itself finds";
   set = {"solve.steps=6", "scene.title=U"};
   EXPECT_EQ(reason(), "[scene] has changed");
-}
-
-TEST_F(Freshness, a_table_that_adds_results_is_a_reason_only_where_it_comes) {
-  reason();
-  with_budget = true;
-  EXPECT_EQ(reason(), "[budget] is new");
-  EXPECT_EQ(reason(), "");
-  with_budget = false;
-  EXPECT_EQ(reason(), "");
 }
 
 TEST_F(Freshness, another_content_of_an_input_is_a_reason) {

@@ -208,7 +208,7 @@ TEST_F(EnsembleProducts, say_how_far_every_kept_deposit_is_from_the_surveyed_thi
   write_members();
   EnsembleCounts counts = empty_counts(test::ensemble_scene(), 40, {0, 40}, {});
   counts.fingerprint = "f";
-  counts.keeps_deposits = true;
+  counts.deposit_quantum = 1e-3;
   for (std::int64_t k = 0; k < 40; ++k)
     counts.add(k, test::member_maps(counts.scene, test::reach_of(table_, k), test::depth_of(table_, k)),
                test::result_of(table_, k));
@@ -238,8 +238,8 @@ TEST_F(EnsembleProducts, say_how_far_every_kept_deposit_is_from_the_surveyed_thi
     const std::size_t bias_at = line.rfind(',', line.size() - 3), rmse_at = line.rfind(',', bias_at - 1);
     bias = std::stod(line.substr(bias_at + 1));
     rmse = std::stod(line.substr(rmse_at + 1));
-    EXPECT_NEAR(rmse, std::sqrt(squares / cells), KeptThickness::quantum) << line;
-    EXPECT_NEAR(bias, sum / cells, KeptThickness::quantum) << line;
+    EXPECT_NEAR(rmse, std::sqrt(squares / cells), counts.deposit_quantum) << line;
+    EXPECT_NEAR(bias, sum / cells, counts.deposit_quantum) << line;
   }
 }
 

@@ -78,7 +78,7 @@ TEST(Slides, get_the_rectangle_around_their_outline_and_a_margin_in_whole_cells)
                  ManySlides::feature(505, 405, R"("name":"b","depth":3)")});
   const EnsemblePlan plan = ManySlides::plan(many.recipe(std::string(by_depth) + "margin_m = 95.0\n"));
   const SlideTable& slides = *plan.table.slides;
-  EXPECT_EQ(slides.names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(plan.table.names, (std::vector<std::string>{"a", "b"}));
   // a: columns 30 to 33 and ten around; b lies half a cell off, and touches five.
   EXPECT_EQ(slides.lattice.west, 500200);
   EXPECT_EQ(slides.lattice.south, 5100100);
@@ -208,7 +208,7 @@ TEST(Slides, that_are_listed_choose_their_outline_and_set_values) {
       "[[slides.scenario]]\nname = \"stiff\"\nwhere = \"name = 'b'\"\nthickness_m = 2.5\n"
       "set = [\"solve.base.friction_angle_deg = 24\"]\n");
   const EnsemblePlan plan = ManySlides::plan(recipe);
-  EXPECT_EQ(plan.table.slides->names, (std::vector<std::string>{"soft", "stiff"}));
+  EXPECT_EQ(plan.table.names, (std::vector<std::string>{"soft", "stiff"}));
   EXPECT_EQ(plan.table.find("solve.base.friction_angle_deg")->values, (std::vector<double>{14, 24}));
   EXPECT_EQ(plan.table.values_of(1, "solve."), (std::vector<std::string>{"solve.base.friction_angle_deg=24"}));
   EXPECT_EQ(plan.table.slides->windows[0].column, plan.table.slides->windows[1].column);

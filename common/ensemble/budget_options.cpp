@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/budget/options.hpp"
+#include "common/ensemble/budget_options.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -32,20 +32,19 @@ void OwnChange::describe(recipe::Visitor& v) {
   const bool fits = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_';
   });
-  v.needs(fits, {fmt::format("[[budget.run]] name = \"{}\"", name), "it stands in tables and files",
+  v.needs(fits, {fmt::format("[[ensemble.budget.run]] name = \"{}\"", name), "it stands in tables and files",
                  "Use letters, digits, '-' and '_'"});
   recipe::choice(v, "kind", kind, {{"physical", BudgetKind::physical}, {"numerical", BudgetKind::numerical}},
                  "whether the doubt is about the slide or about the computation");
   v.names("set", set, {}, "what is other, as for --set: [\"solve.base.friction_angle_deg=20\"]");
-  v.needs(!set.empty(), {fmt::format("[[budget.run]] \"{}\" sets nothing", name), "the run would be the same",
+  v.needs(!set.empty(), {fmt::format("[[ensemble.budget.run]] \"{}\" sets nothing", name), "the run would be the same",
                          "Add set = [\"solve. ...=...\"]"});
 }
 
 void BudgetOptions::describe(recipe::Visitor& v) {
-  v.flag("make", make, "the runs of the error budget are made whenever the recipe runs, as by --budget");
   v.names("leave_out", leave_out, names_of_rows(), "rows that are not made");
   const auto differs = [&](double factor, const char* key) {
-    v.needs(factor != 1, {fmt::format("[budget] {} = 1", key), "the other run would be the same",
+    v.needs(factor != 1, {fmt::format("[ensemble.budget] {} = 1", key), "the other run would be the same",
                           "Give another factor, or leave the row out with leave_out"});
   };
   v.number("cell_factor", cell_factor, recipe::Range{0.1, 10}, "row cells: sides of the other cells over the run's");
@@ -61,22 +60,21 @@ void BudgetOptions::describe(recipe::Visitor& v) {
                     "the same as an angle, in the place of friction_doubt");
   v.number("drag_doubt", drag_doubt, recipe::Range{0, 1, true, true},
            "row drag: share by which the drag of the bed may be wrong, either way");
-  v.integer("survey_draws", survey_draws, {1, 100}, "row survey: runs, each with another error of the survey");
-  v.integer("seed", seed, {0, 2147483647}, "row survey: another seed draws other errors");
-  recipe::table(v, "elevation_error", elevation_error,
-                "row survey: the error of the elevation models; nothing: as they show it on stable ground",
-                "budget.elevation_error");
-  recipe::list(v, "run", changes, "a run of your own, with other values of [solve]");
+  v.integer("survey_draws", survey_draws, {1, 100},
+            "row survey: members, each with another error of [ensemble.elevation_error]; nothing there: as the surveys "
+            "show it on stable ground");
+  recipe::list(v, "run", changes, "a member of your own, with other values of [solve]");
 }
 
 void BudgetOptions::check(std::vector<Fault>& faults) const {
-  const std::vector<std::string_view> rows = names_of_rows();
-  if (changes.empty() && std::none_of(rows.begin(), rows.end(), [&](std::string_view row) { return has(row); }))
-    faults.push_back({"[budget] leave_out names all rows", "nothing would be left to run", "Leave one of them in"});
+  const std::vector<BudgetMember> members = budget_members(*this);
+  if (members.size() == 1)
+    faults.push_back(
+        {"[ensemble.budget] leave_out names all rows", "nothing would be left to run", "Leave one of them in"});
   std::set<std::string> names;
-  for (const OwnChange& change : changes)
-    if (!names.insert(change.name).second)
-      faults.push_back({fmt::format("[[budget.run]] \"{}\" is there twice", change.name),
+  for (const BudgetMember& member : members)
+    if (!names.insert(member.name).second)
+      faults.push_back({fmt::format("[[ensemble.budget.run]] \"{}\" is there twice", member.name),
                         "the table could not tell the runs apart", "Give one of them another name"});
 }
 
@@ -84,10 +82,19 @@ bool BudgetOptions::has(std::string_view row) const {
   return std::find(leave_out.begin(), leave_out.end(), row) == leave_out.end();
 }
 
-BudgetOptions budget_of(const recipe::Recipe& recipe, bool asked) {
-  auto options = recipe.read<BudgetOptions>("budget");
-  options.make = options.make || asked;
-  return options;
+std::vector<BudgetMember> budget_members(const BudgetOptions& options) {
+  std::vector<BudgetMember> members{{"recipe", ""}};
+  for (const BudgetRow& row : budget_rows) {
+    const std::string name = row.name;
+    if (name.starts_with("own") || !options.has(name)) continue;
+    for (int draw = 1; draw <= options.survey_draws && name == survey_row; ++draw)
+      members.push_back({fmt::format("{}-{}", name, draw), name});
+    if (name != survey_row) members.push_back({name + std::string(row.one), name});
+    if (!row.other.empty()) members.push_back({name + std::string(row.other), name});
+  }
+  for (const OwnChange& change : options.changes)
+    members.push_back({change.name, change.kind == BudgetKind::physical ? "own" : "own-numerical"});
+  return members;
 }
 
 }  // namespace talus
