@@ -53,7 +53,7 @@ ElevationErrors::ElevationErrors(const ElevationErrorOptions& options, const Opt
                                  int seed)
     : seed_(static_cast<std::uint64_t>(seed)) {
   if (options.from_survey) {
-    take_survey(of_base, base);
+    take_survey(base);
     return;
   }
   if (options.thickness_deviation && of_base.way() == Way::laboratory)
@@ -64,7 +64,7 @@ ElevationErrors::ElevationErrors(const ElevationErrorOptions& options, const Opt
   add_part(base.bed.grid, 1, *options.range);
 }
 
-void ElevationErrors::take_survey(const Options& of_base, const SceneRasters& base) {
+void ElevationErrors::take_survey(const SceneRasters& base) {
   if (!base.survey)
     refuse_errors("from_survey = true without two surveys", "the recipe gives no before_dem and after_dem to compare",
                   "Give the numbers: terrain_deviation_m, thickness_deviation_m and range_m");

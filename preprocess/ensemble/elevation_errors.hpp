@@ -38,7 +38,7 @@ class ElevationErrors {
     double range;  ///< [m]; 0: cells err independently
     RandomField field;
   };
-  void take_survey(const Options& of_base, const SceneRasters& base);
+  void take_survey(const SceneRasters& base);
   void add_part(const MapGrid& grid, double share, double range);
   void add_thickness(SceneRasters& scene, const std::vector<double>& field) const;
 

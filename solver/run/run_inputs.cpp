@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/checksum.hpp"
+
 namespace talus::solver {
 
 void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
