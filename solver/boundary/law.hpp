@@ -32,6 +32,7 @@
 #include "solver/boundary/laws/pouliquen.hpp"
 #include "solver/boundary/laws/samosat.hpp"
 #include "solver/boundary/laws/stick.hpp"
+#include "solver/boundary/laws/table.hpp"
 #include "solver/boundary/laws/velocity_weakening.hpp"
 #include "solver/boundary/laws/voellmy.hpp"
 
@@ -44,6 +45,7 @@ namespace talus {
   LAW(voellmy, Voellmy)                      \
   LAW(samosat, Samosat)                      \
   LAW(pouliquen, Pouliquen)                  \
+  LAW(table, FrictionTable)                  \
   LAW(none, NoFriction)                      \
   LAW(stick, Stick)
 
