@@ -159,11 +159,9 @@ double area_of(const std::vector<Vector>& places, const std::vector<openvdb::Vec
               "Check its unit, which must be the metre, and its place");
 }
 
-BodySurface read_surface(const Wanted& wanted) {
-  openvdb::initialize();
+BodySurface surface_in(const Wanted& wanted, const openvdb::FloatGrid::Ptr& grid) {
   const fs::path& file = wanted.file;
   const std::array<double, 3>& largest = wanted.largest;
-  const auto grid = open_grid(file, wanted.grid);
   check_numbers(file, *grid);
   std::vector<openvdb::Vec3s> corners;
   std::vector<openvdb::Vec3I> triangles;
@@ -203,6 +201,37 @@ BodySurface read_surface(const Wanted& wanted) {
   return surface;
 }
 
+/// The level set of a body. Faults are those of `file`.
+openvdb::FloatGrid::Ptr level_set_of(const SolidBody& body, double voxel, const fs::path& file) {
+  const auto far = static_cast<float>(band * voxel);
+  auto grid = openvdb::FloatGrid::create(far);
+  auto transform = openvdb::math::Transform::createLinearTransform(voxel);
+  transform->postTranslate(Vector(body.low[0], body.low[1], body.low[2]));
+  const auto last = [&](std::size_t axis) {
+    return static_cast<int>(std::ceil((body.high[axis] - body.low[axis]) / voxel + band));
+  };
+  const int margin = static_cast<int>(band);
+  auto accessor = grid->getAccessor();
+  bool any = false;
+  for (int i = -margin; i <= last(0); ++i) {
+    for (int j = -margin; j <= last(1); ++j) {
+      for (int k = -margin; k <= last(2); ++k) {
+        const double d = body.distance(body.low[0] + i * voxel, body.low[1] + j * voxel, body.low[2] + k * voxel);
+        if (std::abs(d) < band * voxel) accessor.setValueOn({i, j, k}, static_cast<float>(d));
+        any = any || d < 0;
+      }
+    }
+  }
+  if (!any)
+    refuse_file(file, fmt::format("the body \"{}\" lies between the voxels", body.name),
+                fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
+  openvdb::tools::signedFloodFill(grid->tree());
+  grid->setTransform(transform);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setName(body.name);
+  return grid;
+}
+
 /// Bounds the memory of this process until the end of the scope: OpenVDB allocates what the sizes in a damaged file
 /// say.
 class MemoryBound {
@@ -236,41 +265,20 @@ BodySurface read_level_set(const fs::path& file, const std::string& name, const 
   std::error_code unknown;
   const auto size = fs::is_regular_file(file, unknown) ? fs::file_size(file, unknown) : 0;
   const MemoryBound bound(0x1p31 + 64 * static_cast<double>(size));  // compressed contents unfold some ten times
-  return read_surface({file, name, largest});
+  openvdb::initialize();
+  const Wanted wanted{file, name, largest};
+  return surface_in(wanted, open_grid(file, name));
+}
+
+BodySurface surface_of(const VoxelBody& given, const std::array<double, 3>& largest) {
+  openvdb::initialize();
+  return surface_in({given.body.name, "", largest}, level_set_of(given.body, given.voxel, given.body.name));
 }
 
 void write_level_sets(const fs::path& file, const std::vector<SolidBody>& bodies, double voxel) {
   openvdb::initialize();
   openvdb::GridPtrVec grids;
-  for (const SolidBody& body : bodies) {
-    const auto far = static_cast<float>(band * voxel);
-    auto grid = openvdb::FloatGrid::create(far);
-    auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-    transform->postTranslate(Vector(body.low[0], body.low[1], body.low[2]));
-    const auto last = [&](std::size_t axis) {
-      return static_cast<int>(std::ceil((body.high[axis] - body.low[axis]) / voxel + band));
-    };
-    const int margin = static_cast<int>(band);
-    auto accessor = grid->getAccessor();
-    bool any = false;
-    for (int i = -margin; i <= last(0); ++i) {
-      for (int j = -margin; j <= last(1); ++j) {
-        for (int k = -margin; k <= last(2); ++k) {
-          const double d = body.distance(body.low[0] + i * voxel, body.low[1] + j * voxel, body.low[2] + k * voxel);
-          if (std::abs(d) < band * voxel) accessor.setValueOn({i, j, k}, static_cast<float>(d));
-          any = any || d < 0;
-        }
-      }
-    }
-    if (!any)
-      refuse_file(file, fmt::format("the body \"{}\" lies between the voxels", body.name),
-                  fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
-    openvdb::tools::signedFloodFill(grid->tree());
-    grid->setTransform(transform);
-    grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    grid->setName(body.name);
-    grids.push_back(grid);
-  }
+  for (const SolidBody& body : bodies) grids.push_back(level_set_of(body, voxel, file));
   PendingFile pending(file);
   try {
     write_grids(pending.path(), file, grids);

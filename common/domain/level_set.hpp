@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,17 @@ struct SolidBody {
   std::array<double, 3> low, high;                         // [m]
   std::function<double(double, double, double)> distance;  // [m]
 };
+
+/// A body that a run reads from memory, in voxels of `voxel` [m]; null where it reads a file.
+struct VoxelBody {
+  SolidBody body;
+  double voxel;
+};
+using BodyInMemory = std::shared_ptr<const VoxelBody>;
+
+/// The surface of a body, as read_level_set() gives it from a file of write_level_sets(). Throws DataError: a body that
+/// no voxel lies in, or too large for such facets.
+BodySurface surface_of(const VoxelBody& body, const std::array<double, 3>& largest);
 
 /// All of them into one file (aside, renamed), in voxels of `voxel` [m]. Throws DataError: a body that no voxel lies
 /// in; disk full, not writable.

@@ -18,16 +18,18 @@ namespace talus::recipe {
 namespace fs = std::filesystem;
 namespace {
 
-toml::table parse(const fs::path& file) {
+std::string contents_of(const fs::path& file) {
   constexpr std::uintmax_t most = 16 << 20;  // far beyond any recipe
-  const std::string text = whole_text(file, most, [&](const std::string& reason) {
+  return whole_text(file, most, [&](const std::string& reason) {
     throw RecipeError(Fault{file.string() + ": the recipe cannot be read", reason, "Check the path"});
   });
+}
+
+toml::table toml_of(std::string_view text, const std::string& shown) {
   try {
-    return toml::parse(text, file.string());
+    return toml::parse(text, shown);
   } catch (const toml::parse_error& error) {
-    throw RecipeError(Fault{place(file.string(), error.source()) + ": this is not TOML",
-                            std::string(error.description()),
+    throw RecipeError(Fault{place(shown, error.source()) + ": this is not TOML", std::string(error.description()),
                             "Mend the line; the format is described on https://toml.io"});
   }
 }
@@ -57,16 +59,27 @@ std::string place(const std::string& file, const toml::source_region& source) {
   return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
 }
 
-Recipe::Recipe(const fs::path& file, const std::vector<std::string>& overrides) : parsed_(std::make_unique<Parsed>()) {
-  parsed_->root = parse(file);
-  parsed_->overrides = overrides;
+std::unique_ptr<Recipe::Parsed> Recipe::parsed(std::string_view text, const fs::path& file, std::string shown,
+                                               const std::vector<std::string>& overrides) {
+  auto parsed = std::make_unique<Parsed>();
+  parsed->root = toml_of(text, shown);
+  parsed->overrides = overrides;
   std::vector<Fault> faults;
-  apply_overrides(parsed_->root, overrides, faults);
+  apply_overrides(parsed->root, overrides, faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
-  parsed_->file = fs::absolute(file).lexically_normal();
-  parsed_->shown = file.string();
+  parsed->file = fs::absolute(file).lexically_normal();
+  parsed->shown = std::move(shown);
+  return parsed;
+}
+
+Recipe::Recipe(const fs::path& file, const std::vector<std::string>& overrides)
+    : parsed_(parsed(contents_of(file), file, file.string(), overrides)) {
   show_path_as(parsed_->file, parsed_->shown, file.filename().string());
   show_path_as(parsed_->file.parent_path(), file.parent_path().string(), "");
+}
+
+Recipe Recipe::parse(std::string_view text, const fs::path& folder, const std::vector<std::string>& overrides) {
+  return Recipe(parsed(text, folder / "recipe.toml", "recipe.toml", overrides));
 }
 
 Recipe::Recipe(std::unique_ptr<Parsed> parsed) : parsed_(std::move(parsed)) {}

@@ -154,6 +154,9 @@ class Recipe {
   /// items of lists are not. The values are checked like the file's. Messages name "--set key=value" instead of file
   /// and line.
   explicit Recipe(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+  /// The recipe in a text of TOML. Its paths are relative to `folder`; messages call it "recipe.toml".
+  static Recipe parse(std::string_view text, const std::filesystem::path& folder = ".",
+                      const std::vector<std::string>& overrides = {});
   Recipe(Recipe&& other) noexcept;
   ~Recipe();
   /// The recipe with other values, each "key=value" as the constructor takes them. Throws RecipeError: what cannot be
@@ -190,6 +193,8 @@ class Recipe {
   std::unique_ptr<Visitor> make_reader(std::string_view stage, std::vector<Fault>& faults) const;
   struct Parsed;
   explicit Recipe(std::unique_ptr<Parsed> parsed);
+  static std::unique_ptr<Parsed> parsed(std::string_view text, const std::filesystem::path& file, std::string shown,
+                                        const std::vector<std::string>& overrides);
   std::unique_ptr<Parsed> parsed_;
 };
 

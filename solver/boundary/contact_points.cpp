@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "common/domain/level_set.hpp"
 #include "common/error.hpp"
 
 namespace talus::solver {
@@ -83,7 +82,8 @@ Bins exposed_facets(const MapGrid& map, const GridShape& shape, const TerrainTab
 std::string add_obstacle(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain, const Obstacle& o,
                          int body, std::vector<Sample>& samples) {
   const double half = 0.5 * shape.spacing, half_layer = 0.5 * shape.layer_height;
-  const BodySurface surface = read_level_set(o.level_set, o.grid, {half, half, half_layer});
+  const std::array<double, 3> largest{half, half, half_layer};
+  const BodySurface surface = o.body ? surface_of(*o.body, largest) : read_level_set(o.level_set, o.grid, largest);
   double exposed = 0;
   std::size_t points = 0;
   for (const auto& [key, bin] : exposed_facets(map, shape, terrain, surface)) {

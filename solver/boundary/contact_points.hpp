@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/domain/level_set.hpp"
 #include "common/map/raster.hpp"
 #include "solver/grid/terrain.hpp"
 
@@ -18,6 +19,7 @@ struct Obstacle {
   std::string name;
   std::filesystem::path level_set;  ///< OpenVDB file of signed distances [m], negative inside
   std::string grid;                 ///< in that file; empty: the only one
+  BodyInMemory body = {};           ///< instead of a file
   double friction = 0;              ///< coefficient of its surface [-]
 };
 

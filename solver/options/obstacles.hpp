@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/domain/level_set.hpp"
 #include "common/recipe/recipe.hpp"
 
 namespace talus::solver {
@@ -16,6 +17,7 @@ struct ObstacleOptions {
   std::string name;
   std::filesystem::path level_set;  ///< empty: OUT/obstacles.vdb
   std::string grid;            ///< in that file; empty: the obstacle's name, or the only one of a file that is given
+  BodyInMemory body = {};      ///< instead of a file; no key
   double friction_angle = 20;  ///< [deg]
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v) {

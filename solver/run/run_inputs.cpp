@@ -12,7 +12,7 @@ namespace talus::solver {
 
 void find_obstacles(SolveOptions& o, const std::filesystem::path& out) {
   for (ObstacleOptions& obstacle : o.obstacles) {
-    if (!obstacle.level_set.empty()) continue;
+    if (obstacle.body || !obstacle.level_set.empty()) continue;
     obstacle.level_set = out / "obstacles.vdb";
     if (obstacle.grid.empty()) obstacle.grid = obstacle.name;
   }

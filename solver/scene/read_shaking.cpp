@@ -151,6 +151,7 @@ class AccelerogramReader {
 }  // namespace
 
 Shaking read_shaking(const ShakingOptions& options) {
+  if (options.record) return *options.record;
   return options.acts() ? AccelerogramReader(options).read() : Shaking{};
 }
 

@@ -9,7 +9,7 @@
 namespace talus::solver {
 
 /// The shaking that the options ask for, in SI units, along x, y and z of the map, from `start` on; none where they
-/// name no file. The function throws DataError, with the line, for what is no accelerogram: see
+/// name neither record nor file. The function throws DataError, with the line, for what is no accelerogram: see
 /// docs/reference/formats.md.
 Shaking read_shaking(const ShakingOptions& options);
 

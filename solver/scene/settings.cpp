@@ -118,8 +118,11 @@ std::vector<Obstacle> make_obstacles(const std::vector<ObstacleOptions>& options
   std::vector<Obstacle> obstacles;
   obstacles.reserve(options.size());
   for (const ObstacleOptions& o : options)
-    obstacles.push_back(
-        {.name = o.name, .level_set = o.level_set, .grid = o.grid, .friction = coefficient(o.friction_angle)});
+    obstacles.push_back({.name = o.name,
+                         .level_set = o.level_set,
+                         .grid = o.grid,
+                         .body = o.body,
+                         .friction = coefficient(o.friction_angle)});
   return obstacles;
 }
 

@@ -53,6 +53,19 @@ TEST(LevelSet, surface_of_a_ball_far_from_the_origin) {
   }
 }
 
+TEST(LevelSet, surface_of_a_body_in_memory_is_that_of_its_file) {
+  const Scratch scratch;
+  const SolidBody body = ball("ball", 512345.3, 5432100.7, 1234.5, 4);
+  write_level_sets(scratch / "ball.vdb", {body}, 0.5);
+  const BodySurface file = read_level_set(scratch / "ball.vdb", "", {0.3, 0.4, 0.5});
+  const BodySurface memory = surface_of({body, 0.5}, {0.3, 0.4, 0.5});
+  EXPECT_EQ(memory.volume, file.volume);
+  EXPECT_EQ(memory.low, file.low);
+  ASSERT_EQ(memory.facets.size(), file.facets.size());
+  for (std::size_t f = 0; f < file.facets.size(); ++f) EXPECT_EQ(memory.facets[f].area, file.facets[f].area) << f;
+  EXPECT_NE(fault_of<DataError>([&] { surface_of({ball("dust", 0.26, 0.26, 0.26, 0.1), 1}, {1, 1, 1}); }), "");
+}
+
 TEST(LevelSet, several_bodies_are_told_apart_by_name) {
   const Scratch scratch;
   write_level_sets(scratch / "two.vdb", {ball("small", 0, 0, 0, 3), ball("large", 20, 0, 0, 6)}, 0.5);

@@ -33,6 +33,16 @@ struct RecipeFile : testing::Test {
   }
 };
 
+TEST_F(RecipeFile, is_the_same_as_its_text) {
+  const std::string text = "[solve]\nsteps = 7\nterrain = \"dem/before.tif\"\n";
+  const Recipe parsed = Recipe::parse(text, scratch.folder(), {"solve.steps=8"});
+  EXPECT_EQ(parsed.read<SampleOptions>("solve").steps, 8);
+  EXPECT_EQ(parsed.read<SampleOptions>("solve").terrain, read(text).terrain);
+  EXPECT_EQ(parsed.canonical("solve"), Recipe(scratch.write("r.toml", text), {"solve.steps=8"}).canonical("solve"));
+  EXPECT_EQ(fault_of<RecipeError>([] { Recipe::parse("[solve]\nsteps = many\n"); }).substr(0, 18),
+            "recipe.toml:2:9: t");
+}
+
 TEST_F(RecipeFile, reads_every_kind_of_key) {
   const SampleOptions options = read(R"(
 [scene]
