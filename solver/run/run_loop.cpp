@@ -7,8 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "solver/parallel/device.hpp"
+#include "solver/parallel/profile.hpp"
 #include "solver/run/gravity_loading.hpp"
+#include "solver/run/products.hpp"
 #include "solver/run/progress.hpp"
+#include "solver/run/sanity.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -47,7 +51,7 @@ void RunLoop::resume(const SolverState& state, RunMemory memory) {
 std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
   if (fresh) pass_events(0.0, keeper);
   std::string reason = "end of the simulated time";
-  while (stepper_.time() < schedule_.end_time()) {
+  while (!stopped_ && stepper_.time() < schedule_.end_time()) {
     const BatchReport batch = stepper_.advance(schedule_.next_event(stepper_.time(), memory_));
     count(batch);
     bool can_be_saved = batch.can_be_saved;
@@ -66,6 +70,7 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
     }
     if (can_be_saved) pass_whole_state(keeper);
   }
+  if (stopped_) reason = "stopped by the caller";
   if (schedule_.ends_between_frames(stepper_.time(), memory_)) put_frame(stepper_.time(), keeper);
   return reason;
 }
@@ -109,11 +114,11 @@ void RunLoop::count(const BatchReport& batch) {
 }
 
 void RunLoop::pass_events(double time, RunKeeper& keeper) {
-  if (schedule_.record_due(time, memory_)) record(time);
+  if (schedule_.record_due(time, memory_)) record(time, keeper);
   if (schedule_.frame_due(time, memory_)) put_frame(time, keeper);
 }
 
-void RunLoop::record(double time) {
+void RunLoop::record(double time, RunKeeper& keeper) {
   Solver& solver = stepper_.solver();
   const Energies energies = solver.energies();
   memory_.peak_kinetic = std::max(memory_.peak_kinetic, energies.kinetic);
@@ -124,6 +129,7 @@ void RunLoop::record(double time) {
                    .counted = memory_,
                    .solver = solver});
   ++memory_.records;
+  if (!keeper.pass_record(time)) stopped_ = true;
 }
 
 void RunLoop::put_frame(double time, RunKeeper& keeper) {
@@ -151,6 +157,34 @@ RunEnd RunLoop::end(const SolverState& state) const {
           .state = state,
           .initial_thickness = memory_.initial_thickness,
           .pulses = memory_.pulses};
+}
+
+void RunLoop::measure(const RunEnd& end, RunSummary& summary) const {
+  const Solver& solver = stepper_.solver();
+  const AnyDevice& device = stepper_.device();
+  summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
+  summary.material = options().material.sentence();
+  summary.bed = options().base.sentence();
+  summary.precision = options().precision == Precision::double_ ? "double" : "single";
+  summary.version = version();
+  summary.particles = static_cast<std::int64_t>(scene().points.size() + scene().inflow.points_in(memory_.pulses));
+  summary.particles_outflow = memory_.outflow_count;
+  summary.steps = end.state.clock.step;
+  summary.time_end = stepper_.time();
+  summary.wall_time = memory_.wall_time;
+  summary.memory = static_cast<double>(solver.bytes());
+  for (const auto& [owner, bytes] : solver.memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
+  for (const Profile::Phase& p : device.profile().phases()) summary.profile.emplace_back(p.name, p.seconds);
+  summary.density = options().material.density;
+  for (const std::string& release : end.scene.release_names)
+    summary.release_density.push_back(options().material_of(release).density);
+  summary.layer_height = end.domain.layer_height;
+  const SlideVolumes volumes = slide_volumes(end, memory_.outflow_volume);
+  summary.volume_released = volumes.released;
+  summary.volume_entrained = volumes.entrained;
+  summary.volume_final = volumes.final;
+  summary.volume_outflow = memory_.outflow_volume;
+  summary.sanity = sanity_of(end, history_.rows(), memory_.outflow_volume);
 }
 
 }  // namespace talus::solver

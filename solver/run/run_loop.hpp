@@ -39,6 +39,8 @@ class RunKeeper {
   virtual ~RunKeeper() = default;
   /// A frame is due at `time` [s], the `number`th from 0.
   virtual void put_frame(double time, std::int64_t number) = 0;
+  /// The history has a record at `time` [s]. The run ends here where the method returns false.
+  virtual bool pass_record(double /*time*/) { return true; }
   /// A batch of steps has been taken.
   virtual void pass_batch(const BatchReport& batch) = 0;
   /// There are more steps to take, and a run can go on from the state as it is: it may be written down, and the run
@@ -77,6 +79,8 @@ class RunLoop {
   double mass_error() const;
   /// The end of the run; it refers to this loop and to `state`.
   RunEnd end(const SolverState& state) const;
+  /// The method adds to a summary what this run tells of itself at its end.
+  void measure(const RunEnd& end, RunSummary& summary) const;
 
  private:
   bool let_in(double time);
@@ -84,7 +88,7 @@ class RunLoop {
   bool left_empty() const;
   void count(const BatchReport& batch);
   void pass_events(double time, RunKeeper& keeper);
-  void record(double time);
+  void record(double time, RunKeeper& keeper);
   void put_frame(double time, RunKeeper& keeper);
   bool calm() const;
 
@@ -94,6 +98,7 @@ class RunLoop {
   History history_;
   RunMemory memory_;
   StepWatch watch_;
+  bool stopped_ = false;  ///< by the keeper
 };
 
 }  // namespace talus::solver

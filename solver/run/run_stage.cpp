@@ -26,13 +26,12 @@ void report_profile(const RunSummary& summary, const AnyDevice& device, const st
   write_text(out / "profile.csv", profile_csv(profile, copy));
 }
 
-/// This function adds the findings of a plan to those of the stage.
+}  // namespace
+
 void add_findings_of(const Plan& plan) {
   add_findings(plan.domain->findings);
   for (const Finding& finding : plan.findings) add_finding(finding);
 }
-
-}  // namespace
 
 void take_up(Simulation& simulation, const RunFlags& flags, const RunPaths& paths, const std::string& fingerprint) {
   if (flags.restart) return simulation.resume(flags.restart->empty() ? paths.checkpoint : *flags.restart);

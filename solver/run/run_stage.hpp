@@ -36,6 +36,9 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const std::share
 /// refused: hours of work would go without a word.
 void take_up(Simulation& simulation, const RunFlags& flags, const RunPaths& paths, const std::string& fingerprint);
 
+/// This function adds the findings of the domain and of a plan to those of the calling thread.
+void add_findings_of(const Plan& plan);
+
 /// What the used recipe says of a run that is whole.
 Facts facts_of(const RunSummary& summary);
 

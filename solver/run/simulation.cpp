@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "solver/parallel/device.hpp"
-#include "solver/parallel/profile.hpp"
 #include "solver/run/products.hpp"
 #include "solver/run/progress.hpp"
 #include "solver/run/recorders/check_checkpoint.hpp"
@@ -15,7 +13,6 @@
 #include "solver/run/sanity.hpp"
 
 namespace talus::solver {
-
 void remove_leftovers(const RunPaths& paths) {
   remove_for_good(paths.checkpoint);
   FrameStore(paths.frames).clear();
@@ -108,40 +105,11 @@ void Simulation::save_checkpoint() {
   frames_.drop_others();  // of the run whose checkpoint this one has replaced
 }
 
-void Simulation::measure(const RunEnd& end, RunSummary& summary) const {
-  const Solver& solver = loop_.stepper().solver();
-  const AnyDevice& device = loop_.stepper().device();
-  summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
-  summary.material = loop_.options().material.sentence();
-  summary.bed = loop_.options().base.sentence();
-  summary.precision = loop_.options().precision == Precision::double_ ? "double" : "single";
-  summary.version = version();
-  summary.particles =
-      static_cast<std::int64_t>(loop_.scene().points.size() + loop_.scene().inflow.points_in(loop_.memory().pulses));
-  summary.particles_outflow = loop_.memory().outflow_count;
-  summary.steps = end.state.clock.step;
-  summary.time_end = loop_.stepper().time();
-  summary.wall_time = loop_.memory().wall_time;
-  summary.memory = static_cast<double>(solver.bytes());
-  for (const auto& [owner, bytes] : solver.memory()) summary.memory_of.emplace_back(owner, static_cast<double>(bytes));
-  for (const Profile::Phase& p : device.profile().phases()) summary.profile.emplace_back(p.name, p.seconds);
-  summary.density = loop_.options().material.density;
-  for (const std::string& release : end.scene.release_names)
-    summary.release_density.push_back(loop_.options().material_of(release).density);
-  summary.layer_height = end.domain.layer_height;
-  const SlideVolumes volumes = slide_volumes(end, loop_.memory().outflow_volume);
-  summary.volume_released = volumes.released;
-  summary.volume_entrained = volumes.entrained;
-  summary.volume_final = volumes.final;
-  summary.volume_outflow = loop_.memory().outflow_volume;
-  summary.sanity = sanity_of(end, loop_.history().rows(), loop_.memory().outflow_volume);
-}
-
 RunSummary Simulation::finish(RunSummary summary, const Findings& found) {
   const SolverState state = loop_.stepper().solver().state();
   loop_.memory().wall_time = timer_.seconds();
   const RunEnd end = loop_.end(state);
-  measure(end, summary);
+  loop_.measure(end, summary);
   loop_.history().conclude();
   say_sanity(summary.sanity);
   summary.findings.insert(summary.findings.end(), found.list().begin(), found.list().end());

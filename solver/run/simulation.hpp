@@ -63,7 +63,6 @@ class Simulation : private RunKeeper {
   void save_checkpoint();
   RunSummary finish(RunSummary summary, const Findings& found);
   void write_run(const RunEnd& end, const RunSummary& summary);
-  void measure(const RunEnd& end, RunSummary& summary) const;
 
   RunPaths paths_;
   RunMarks marks_;

@@ -8,14 +8,11 @@
 
 namespace talus::solver {
 
-FrameRecorder::FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store)
-    : scene_(scene), options_(options), store_(std::move(store)) {}
-
-PointFrame FrameRecorder::point_frame(double time, const ParticleState& s) const {
-  const auto materials = make_materials<double>(options_, scene_.grid.spacing, scene_.grid.layer_height);
+PointFrame point_frame(const Scene& scene, const SolveOptions& options, double time, const ParticleState& s) {
+  const auto materials = make_materials<double>(options, scene.grid.spacing, scene.grid.layer_height);
   PointFrame frame;
   frame.time = time;
-  frame.position = positions(scene_, s);
+  frame.position = positions(scene, s);
   for (std::size_t p = 0; p < s.size(); ++p) {
     frame.velocity.push_back({static_cast<float>(s.velocity[0][p]), static_cast<float>(s.velocity[1][p]),
                               static_cast<float>(s.velocity[2][p])});
@@ -33,12 +30,15 @@ PointFrame FrameRecorder::point_frame(double time, const ParticleState& s) const
   return frame;
 }
 
+FrameRecorder::FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store)
+    : scene_(scene), options_(options), store_(std::move(store)) {}
+
 void FrameRecorder::put(double time, std::int64_t number, Solver& solver) {
   const bool points = options_.point_frames;
   writing_.start(
       [this, time, number, points, thickness = solver.thickness(), state = points ? solver.shown() : ParticleState{}] {
         PointFrame frame;
-        if (points) frame = point_frame(time, state);
+        if (points) frame = point_frame(scene_, options_, time, state);
         frame.time = time;
         store_.put(number, frame, scene_.map, thickness);
       });

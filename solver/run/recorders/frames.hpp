@@ -12,6 +12,9 @@
 
 namespace talus::solver {
 
+/// The points of a scene at `time` [s], in map coordinates.
+PointFrame point_frame(const Scene& scene, const SolveOptions& options, double time, const ParticleState& points);
+
 /// The recorder of frames, which are written while the run goes on.
 class FrameRecorder {
  public:
@@ -34,8 +37,6 @@ class FrameRecorder {
   void append_to(RunWriter& run, std::int64_t number) const { store_.append_to(run, number, scene_.map); }
 
  private:
-  PointFrame point_frame(double time, const ParticleState& points) const;
-
   const Scene& scene_;
   const SolveOptions& options_;
   FrameStore store_;
