@@ -23,6 +23,8 @@ quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMP
 
 # Man pages, completions, styles and notices go with the programs (cmake/manuals.cmake).
 programs += talus-manuals
+# The Python module goes with them where pybind11 is there (library/CMakeLists.txt).
+programs += talus-python
 PREFIX ?= /usr/local
 
 # What the build folder was configured for; another wish configures it again.
@@ -33,9 +35,10 @@ for_tests := test setup-tests sanitized check check-threads check-faults check-d
 groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TESTS)),tests) \
   $(if $(filter package check-install image,$(MAKECMDGOALS)),package)
 
-.PHONY: help setup setup-tests build say-demo demo demo-weakening install package check-install image with-tests test \
-  sanitized check check-threads check-faults check-qgis check-three-d check-recipes fuzz validate lint docs pictures \
-  tables scores check-docs check-tutorials bundle bundle-solver clean FORCE
+.PHONY: help setup setup-tests build say-demo demo demo-weakening install install-library wheel package \
+  check-install image with-tests test sanitized check check-threads check-faults check-qgis check-three-d \
+  check-recipes fuzz validate lint docs pictures tables scores check-docs check-tutorials bundle bundle-solver \
+  clean FORCE
 
 help: ## this list
 	@echo "make TARGET [PRESET=default|cpu|gpu|check|check-threads] [JOBS=n]"
@@ -99,6 +102,17 @@ demo-weakening: say-demo build ## a rock slope on a bed that weakens with speed,
 install: build ## the programs with recipes, styles, manuals and documents, to PREFIX [PREFIX=/usr/local] [DESTDIR=]
 	@cmake --install $(BUILD) --prefix '$(PREFIX)' --strip >$(BUILD)/install.log
 	@echo "Installed $$(grep -c '^-- Inst' $(BUILD)/install.log) files: $${DESTDIR:-}$(PREFIX)"
+
+install-library: setup $(BUILD)/build.ninja ## libtalus with headers, CMake's package and Python module, to PREFIX
+	@cmake --build $(BUILD) -j $(JOBS) --target talus_library talus-python
+	@cmake --install $(BUILD) --component dev --prefix '$(PREFIX)' --strip >$(BUILD)/install-library.log
+	@echo "Installed $$(grep -c '^-- Inst' $(BUILD)/install-library.log) files: $${DESTDIR:-}$(PREFIX)"
+
+wheel: setup $(BUILD)/build.ninja ## the Python package with its module, in build/wheels/
+	@tools/install-dependencies.sh python
+	@cmake -B $(BUILD) -S . >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target talus-python
+	@tools/make-wheel.sh $(BUILD)
 
 package: docs ## Debian packages, in build/packages/: talus (or talus-gpu, with kernels for GPUs) and talus-doc
 	@tools/make-packages.sh $(BUILD)

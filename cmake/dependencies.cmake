@@ -106,6 +106,12 @@ if(NOT THREE_SCRIPT OR NOT THREE_CONTROLS)
   talus_missing(three.js libjs-three)
 endif()
 cmake_path(SET THREE_FOLDER NORMALIZE ${THREE_SCRIPT}/../../..)   # that its modules are named from
+# The Python module (library/python.cpp) is made where pybind11 is found, for the system's interpreter.
+find_program(PYTHON_EXECUTABLE NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_package(pybind11 CONFIG QUIET)
+if(NOT pybind11_FOUND)
+  message(STATUS "Talus: no Python module, since pybind11 was not found (apt-get install pybind11-dev python3-dev)")
+endif()
 if(BUILD_TESTING)
   find_package(GTest CONFIG QUIET)
   if(NOT GTest_FOUND)

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` lays where. Two components: `runtime` (what runs, with recipes, samples, styles, man pages and
-# completions) and `docs`. Packages and bundles are made of the same rules (cmake/package.cmake, tools/make-bundle.sh).
+# completions) and `docs`. A third, `dev` (libtalus, its headers and the Python module), is installed by its name alone
+# (make install-library). Packages and bundles are made of the same rules (cmake/package.cmake, tools/make-bundle.sh).
 set(TALUS_SHARE ${CMAKE_INSTALL_DATADIR}/talus)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)   # the tests need not be built for it: make build, then cmake --install
 
@@ -29,6 +30,23 @@ install(DIRECTORY data_samples/ DESTINATION ${TALUS_SHARE}/data_samples COMPONEN
 # For Python: PYTHONPATH=PREFIX/share/talus/python (docs/how-to/python.md).
 install(DIRECTORY python/talus python/examples DESTINATION ${TALUS_SHARE}/python COMPONENT runtime FILES_MATCHING
   PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+
+# libtalus: find_package(Talus) (docs/reference/library.md).
+set(_dev COMPONENT dev EXCLUDE_FROM_ALL)
+install(TARGETS talus_library EXPORT TalusTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ${_dev})
+install(EXPORT TalusTargets NAMESPACE Talus:: FILE TalusConfig.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Talus ${_dev})
+include(CMakePackageConfigHelpers)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/TalusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/TalusConfigVersion.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Talus ${_dev})
+install(FILES library/talus.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/talus ${_dev})
+foreach(_header IN LISTS TALUS_HEADERS)
+  get_filename_component(_folder ${_header} DIRECTORY)
+  install(FILES ${_header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/talus/${_folder} ${_dev})
+endforeach()
+if(TARGET talus_python)
+  install(TARGETS talus_python LIBRARY DESTINATION ${TALUS_SHARE}/python/talus ${_dev})
+endif()
 
 # For QGIS: the plugin, to be installed from its zip file (docs/how-to/qgis.md).
 if(TALUS_QGIS_PLUGIN)

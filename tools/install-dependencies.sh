@@ -6,6 +6,7 @@
 # usage: tools/install-dependencies.sh [GROUP...] [--list]
 #   build     what building and running Talus needs; always among them
 #   tests     what `make test` needs besides: GoogleTest, a browser, readers that are not ours, ffmpeg for animations
+#   python    what the Python module and `make wheel` need; among those of tests
 #   qgis      what `make check-qgis` needs: QGIS itself, about 1 GB
 #   lint, docs, fuzz, package     what `make lint`, `make docs`, `make fuzz` and `make check-install` need
 #   three-d   ParaView, for `make check-three-d`
@@ -25,8 +26,9 @@ build=(
   libjs-leaflet libjs-chart.js libjs-three esbuild
 )
 docs=(doxygen python3-sphinx python3-myst-parser furo)
+python=(pybind11-dev python3-dev python3-numpy python3-pip python3-setuptools python3-venv python3-wheel)
 tests=(
-  libgtest-dev
+  libgtest-dev "${python[@]}"
   # the readers that are not ours: gdalinfo, the COG validator, ncdump, cdo, what the CF checker takes, vdb_print,
   # h5dump, pdfinfo; ffmpeg makes animations where they are asked for
   gdal-bin python3-gdal netcdf-bin cdo python3-netcdf4 udunits-bin libopenvdb-tools hdf5-tools
@@ -59,12 +61,13 @@ for group in "$@"; do
     tests) packages+=("${tests[@]}") ;;
     lint) packages+=("${tests[@]}" "${lint[@]}") ;;   # it reads the tests as well
     docs) packages=("${docs[@]}") ;;
+    python) packages+=("${python[@]}") ;;
     qgis) packages+=("${qgis[@]}") ;;
     fuzz) packages+=("${tests[@]}" "${fuzz[@]}") ;;
     package) packages+=("${package[@]}") ;;
     three-d) packages+=("${three_d[@]}") ;;
     --list) list=yes ;;
-    *) fail "no such group: $group (build, tests, qgis, lint, docs, fuzz, package, three-d)" ;;
+    *) fail "no such group: $group (build, tests, python, qgis, lint, docs, fuzz, package, three-d)" ;;
   esac
 done
 if [[ $list == yes ]]; then

@@ -1,10 +1,24 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What goes wrong, and what is warned of."""
+import logging
+import warnings
 
 
 class TalusError(Exception):
     """Something is wrong with a file, a key or a value; the message says what and how to mend it."""
+
+
+class RecipeError(TalusError):
+    """The recipe is wrong."""
+
+
+class DataError(TalusError):
+    """A file or an array is wrong."""
+
+
+class NumericalError(TalusError):
+    """The computation failed."""
 
 
 class ProgramError(TalusError):
@@ -20,6 +34,14 @@ class ProgramError(TalusError):
 
 class TalusWarning(UserWarning):
     """What a program warned of."""
+
+
+def log(level, text):
+    """Takes a line of a log of talus._core; `level`: that of talus::LogLevel."""
+    if level == 4:
+        warnings.warn(text, TalusWarning, stacklevel=3)
+    else:
+        logging.getLogger("talus").log(logging.DEBUG if level == 0 else logging.INFO, text)
 
 
 def _errors_in(said):

@@ -7,22 +7,26 @@ import shutil
 import subprocess
 import warnings
 
+import talus
 from talus.errors import ProgramError, TalusError, TalusWarning
+from talus.in_process import run_plan
 from talus.recipe import Recipe, toml_value
-from talus.results import open_run
 
 
-def run(recipe, out, set=None, on="auto", programs=None, threads=None):
-    """Runs every stage whose results are not up to date (`talus run`), and returns the run as `talus.open_run` does.
+def run(recipe, out=None, set=None, on="auto", programs=None, threads=None, callback=None):
+    """Runs the plan `recipe` in this process (`talus.in_process.run_plan`), or, with `out`, all stages of a recipe.
 
-    recipe: path of a recipe, or a Recipe that was read, with its changes. out: folder of the results; relative to where
-    you stand. set: values in the place of the recipe's, {"solve.end_time_s": 60.0}; they hold over its changes. on:
-    "auto", "cpu" or "gpu". programs: folder of the programs; by default $TALUS_PROGRAMS, else those beside this
-    package, else those on the PATH. threads: the most to take.
+    Of a recipe it runs every stage whose results are not up to date (`talus run`), and returns the run as
+    `talus.open_run` does. recipe: its path, or a Recipe that was read, with its changes. out: folder of the results;
+    relative to where you stand. set: values in the place of the recipe's, {"solve.end_time_s": 60.0}; they hold over
+    its changes. on: "auto", "cpu" or "gpu". programs: folder of the programs; by default $TALUS_PROGRAMS, else those
+    beside this package, else those on the PATH. threads: the most to take.
 
     Raises ProgramError with the program's own words. What the programs warn of comes as TalusWarning. Ctrl-C lets the
     solver write its checkpoint first; the same call goes on from there.
     """
+    if out is None:
+        return run_plan(recipe, on=on, callback=callback, threads=threads or 0)
     path, changes = (recipe.path, dict(recipe.changes)) if isinstance(recipe, Recipe) else (recipe, {})
     if path is None:
         raise TalusError("this Recipe is from no file. Write it first (recipe.write), then read it")
@@ -37,7 +41,7 @@ def run(recipe, out, set=None, on="auto", programs=None, threads=None):
         raise ProgramError(command, code, said)
     for line in dict.fromkeys(line for line in said.splitlines() if line.startswith("warning: ")):
         warnings.warn(line.removeprefix("warning: "), TalusWarning, stacklevel=2)
-    return open_run(out)
+    return talus.open_run(out)
 
 
 def find_program(name, programs=None):

@@ -30,6 +30,14 @@ class Recipe:
         self.changes = {}  # key: value, of what was set since the recipe was read
 
     @classmethod
+    def parse(cls, text):
+        """The recipe in a text of TOML. Raises TalusError where it is none."""
+        try:
+            return cls(tomllib.loads(text))
+        except tomllib.TOMLDecodeError as error:
+            raise TalusError(f"the recipe cannot be read ({error}). Mend its TOML") from error
+
+    @classmethod
     def read(cls, path):
         """The recipe in a file. Raises TalusError where there is none or it is no TOML."""
         try:
@@ -73,6 +81,14 @@ class Recipe:
         self.changes.pop(key, None)
         self.changes[key] = copy.deepcopy(value)
 
+    def text(self):
+        """The recipe as TOML, without remarks."""
+        return toml_text(self.tables)
+
+    def changes_as_text(self):
+        """The changes as --set of the programs takes them: "key=value"."""
+        return [f"{key}={toml_value(value)}" for key, value in self.changes.items()]
+
     def write(self, path):
         """Writes the recipe to a file, without the remarks of the one that was read.
 
@@ -84,7 +100,7 @@ class Recipe:
             raise TalusError(
                 f"{path}: the recipe is from {self.path.parent}, and its relative paths would lead elsewhere. Write it"
                 " into that folder, or write Recipe(recipe.tables) once its paths are absolute")
-        path.write_text(toml_text(self.tables), encoding="utf-8")
+        path.write_text(self.text(), encoding="utf-8")
 
 
 _MISSING = object()

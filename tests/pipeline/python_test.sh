@@ -49,8 +49,9 @@ test_document_shows_the_examples_as_they_stand() {
     grep -v '^# SPDX-' "$example" >code
     awk -v name="examples/${example##*/}" '/^```python/ { block = ""; inside = 1; next }
       /^```/ && inside { inside = 0; if (index(heading, name)) printf "%s", block; next }
-      inside { block = block $0 "\n"; next } /^#/ { heading = $0 }' "$TALUS_SOURCE/docs/how-to/python.md" >shown
-    cmp code shown || fail "docs/how-to/python.md does not show ${example##*/} as it stands"
+      inside { block = block $0 "\n"; next } /^#/ || /examples\// { heading = $0 }' \
+      "$TALUS_SOURCE"/docs/how-to/{python,extend}.md >shown
+    cmp code shown || fail "docs/how-to/{python,extend}.md do not show ${example##*/} as it stands"
   done
 }
 

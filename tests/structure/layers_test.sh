@@ -45,6 +45,13 @@ test_talus_includes_of_each_stage_its_stage_hpp_alone() {
     refuse "talus/ includes more of a stage than its stage.hpp"
 }
 
+test_library_stands_on_top() {
+  cd "$TALUS_SOURCE"
+  some_includes library
+  includes common preprocess solver postprocess talus | { grep -E ': library/' || true; } |
+    refuse "a folder below includes the library"
+}
+
 test_programs_of_the_stages_are_one_call() {
   cd "$TALUS_SOURCE"
   local stage
