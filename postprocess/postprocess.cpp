@@ -20,7 +20,6 @@
 #include "postprocess/compare/compare.hpp"
 #include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
-#include "postprocess/slides/run_slides.hpp"
 #include "postprocess/survey/found_survey.hpp"
 #include "postprocess/survey/order.hpp"
 #include "postprocess/writers/job.hpp"
@@ -69,7 +68,7 @@ bool has_single_run(const StageContext& context, const Options& options) {
 }  // namespace
 
 Dependencies depends(const StageContext& context) {
-  if (slides_of(context.recipe).on()) return slides_depends(context);
+  if (slides_of(context.recipe).on()) return ensemble_depends(context);
   auto options = context.recipe.read<Options>("postprocess");
   options.survey.name_files(context.out);
   const fs::path run = run_file(context, options);
@@ -187,7 +186,7 @@ void run_single(StageContext& context, const Options& options) {
 
 void run(StageContext& context) {
   const auto options = context.recipe.read<Options>("postprocess");
-  if (slides_of(context.recipe).on()) return run_slides(context, stage(), options);
+  if (slides_of(context.recipe).on()) return run_ensemble(context, stage(), options, true);
   const bool single = has_single_run(context, options);
   if (ensemble_of(context.recipe).on()) run_ensemble(context, stage(), options, !single);
   if (single)

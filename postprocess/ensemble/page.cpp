@@ -19,6 +19,7 @@
 #include "postprocess/ensemble/medoids.hpp"
 #include "postprocess/ensemble/sampling_error.hpp"
 #include "postprocess/report/filled_page.hpp"
+#include "postprocess/report/pack.hpp"
 #include "postprocess/report/page.hpp"
 #include "postprocess/report/parts.hpp"
 
@@ -177,7 +178,9 @@ Window ensemble_window(const EnsemblePageInput& input) {
 std::string ensemble_html(const EnsemblePageInput& input) {
   const Window window = ensemble_window(input);
   int coarsest = 1;
-  PageParts parts{ensemble_maps_json(input, window, coarsest), ensemble_outlines_json(input, window),
+  const MapGrid& grid = input.ensemble.counts.scene.grid;
+  const MapGrid shown = cut({grid, std::vector<double>(grid.count(), 0.0)}, window).grid;
+  PageParts parts{ensemble_maps_json(input, window, coarsest), ensemble_outlines_json(input, window, shown),
                   is_sample(input.ensemble) ? medoids_json(input.ensemble) : no_medoids()};
   parts.map["coarsest"] = coarsest;
   return ensemble_html(input, std::move(parts));

@@ -73,9 +73,12 @@ Window ensemble_window(const EnsemblePageInput& input);
 /// `coarsest` is left as the largest number of cells made one along a side.
 Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, int& coarsest);
 
+/// A quantity with its packed maps, shares null where there are none.
+Json quantity_json(const CountedMap& what, Json shares, Json statistics);
+
 /// Outlines of flow and deposit of the first members, as lists of whole numbers x, y, x, y ... of half cells from the
-/// grid's corner, corners alone; and of release and survey [m from the window's corner].
-Json ensemble_outlines_json(const EnsemblePageInput& input, const Window& window);
+/// corner of `shown`, the cells of the window, corners alone; and of release and survey [m from the window's corner].
+Json ensemble_outlines_json(const EnsemblePageInput& input, const Window& window, const MapGrid& shown);
 
 /// One closed outline after another around the cells of a footprint, in half cells from the grid's corner.
 std::vector<std::vector<int>> footprint_outlines(const std::vector<std::uint8_t>& cells, const MapGrid& grid);

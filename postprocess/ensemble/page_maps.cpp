@@ -109,6 +109,11 @@ Json packed_maps(std::size_t count, const std::function<MapOnPage(std::size_t)>&
   return json;
 }
 
+Json quantity_json(const CountedMap& what, Json shares, Json statistics) {
+  return {{"id", what.name},     {"title", words_of(what)},     {"unit", unit_words(what.unit)},
+          {"early", what.early}, {"shares", std::move(shares)}, {"statistics", std::move(statistics)}};
+}
+
 Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, int& coarsest) {
   std::vector<EnsembleMap> all;
   if (input.budget == nullptr) all = ensemble_maps(input.ensemble, input.options.hazard);
@@ -135,12 +140,8 @@ Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window, in
       if (statistic) statistics.push_back(map);
     }
     json["quantities"].push_back(
-        {{"id", what.name},
-         {"title", words_of(what)},
-         {"unit", unit_words(what.unit)},
-         {"early", what.early},
-         {"shares", shares.empty() ? Json() : stack(page, shares, MergedCells::largest)},
-         {"statistics", stack(page, statistics, what.early ? MergedCells::smallest : MergedCells::largest)}});
+        quantity_json(what, shares.empty() ? Json() : stack(page, shares, MergedCells::largest),
+                      stack(page, statistics, what.early ? MergedCells::smallest : MergedCells::largest)));
   }
   if (all.back().kind == Kind::hazard) json["hazard"] = stack(page, {all.back()}, MergedCells::largest);
   return json;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/ensemble/footprint.hpp"
+#include "common/map/crop.hpp"
 #include "common/map/isolines.hpp"
 #include "common/stage/in_threads.hpp"
 #include "postprocess/ensemble/page.hpp"
@@ -48,26 +49,43 @@ Json lines_of(const std::vector<Polyline>& lines, const Window& window) {
   return list;
 }
 
-/// The part of a footprint that the window shows; outlines are traced there alone.
-std::vector<std::vector<int>> outlines_of(const Footprint& footprint, const MapGrid& grid, const Window& window) {
+/// Outlines of a member's footprint in half cells from the corner of `shown`. Of an ensemble the part that the window
+/// shows is traced; of slides, whose domains are small, the whole.
+std::vector<std::vector<int>> outlines_of(const Footprint& footprint, const MapGrid& grid, const Window* window,
+                                          const MapGrid& shown) {
   const std::vector<std::uint8_t> cells = cells_of(footprint, grid.count());
-  const Raster part = cut({grid, {cells.begin(), cells.end()}}, window);
-  return footprint_outlines({part.values.begin(), part.values.end()}, part.grid);
+  Raster part{grid, {cells.begin(), cells.end()}};
+  if (window != nullptr) part = cut(part, *window);
+  const auto half_cells = [&](double metres) { return static_cast<int>(std::lround(2 * metres / shown.cell)); };
+  const int east = half_cells(part.grid.west - shown.west), north = half_cells(part.grid.south - shown.south);
+  auto lines = footprint_outlines({part.values.begin(), part.values.end()}, part.grid);
+  for (auto& line : lines)
+    for (std::size_t n = 0; n < line.size(); n += 2) {
+      line[n] += east;
+      line[n + 1] += north;
+    }
+  return lines;
 }
 
-/// Both outlines of a member; none of one that is not counted.
+/// The outlines of a member; none of one that is not counted.
 struct MemberOutlines {
-  std::vector<std::vector<int>> flow, deposit;
+  std::vector<std::vector<int>> flow, deposit, release;
 };
 
-/// Of the members from `first` on, before `end`.
-std::vector<MemberOutlines> outlines_of_members(const EnsembleCounts& counts, std::size_t first, std::size_t end,
-                                                const Window& window) {
+/// Of the members from `first` on, before `end`; the release of slides alone.
+std::vector<MemberOutlines> outlines_of_members(const Ensemble& ensemble, std::size_t first, std::size_t end,
+                                                const Window& window, const MapGrid& shown) {
+  const EnsembleCounts& counts = ensemble.counts;
   std::vector<MemberOutlines> outlines(end - first);
-  in_threads(outlines.size(), "making ensemble.html", [&](std::size_t n) {
-    if (counts.states[first + n] != MemberState::counted) return;
-    outlines[n] = {outlines_of(counts.flow[first + n], counts.scene.grid, window),
-                   outlines_of(counts.deposit[first + n], counts.scene.grid, window)};
+  in_threads(outlines.size(), "making the page", [&](std::size_t n) {
+    const std::size_t k = first + n;
+    if (counts.states[k] != MemberState::counted) return;
+    const MapGrid grid = cut(counts.scene.grid, counts.windows[k]);
+    const auto of = [&](const Footprint& footprint) {
+      return outlines_of(footprint, grid, ensemble.table.slides ? nullptr : &window, shown);
+    };
+    outlines[n] = {of(counts.flow[k]), of(counts.deposit[k]), {}};
+    if (ensemble.table.slides) outlines[n].release = of(counts.release[k]);
   });
   return outlines;
 }
@@ -87,29 +105,34 @@ std::vector<std::vector<int>> footprint_outlines(const std::vector<std::uint8_t>
   return outlines;
 }
 
-Json ensemble_outlines_json(const EnsemblePageInput& input, const Window& window) {
+Json ensemble_outlines_json(const EnsemblePageInput& input, const Window& window, const MapGrid& shown) {
   const EnsembleCounts& counts = input.ensemble.counts;
   const MapGrid& grid = counts.scene.grid;
-  const MapGrid part = cut({grid, std::vector<double>(grid.count(), 0.0)}, window).grid;
-  Json json{{"west", part.west},        {"south", part.south},   {"half_cell", 0.5 * part.cell},
-            {"members", Json::array()}, {"flow", Json::array()}, {"deposit", Json::array()}};
+  Json json{{"west", shown.west},       {"south", shown.south},   {"half_cell", 0.5 * shown.cell},
+            {"members", Json::array()}, {"flow", Json::array()},  {"deposit", Json::array()},
+            {"release", Json::array()}, {"survey", Json::array()}};
   std::size_t numbers = 0;
   const std::size_t most = std::min(counts.states.size(), members_on_page);
   for (std::size_t first = 0; first < most && numbers < outline_numbers; first += members_at_a_time) {
     const std::size_t end = std::min(most, first + members_at_a_time);
-    const std::vector<MemberOutlines> outlines = outlines_of_members(counts, first, end, window);
+    const std::vector<MemberOutlines> outlines = outlines_of_members(input.ensemble, first, end, window, shown);
     for (std::size_t k = first; k < end && numbers < outline_numbers; ++k) {
       if (counts.states[k] != MemberState::counted) continue;
-      const auto& [flow, deposit] = outlines[k - first];
+      const auto& [flow, deposit, release] = outlines[k - first];
       numbers += count_of(flow) + count_of(deposit);
       json["members"].push_back(k);
       json["flow"].push_back(flow);
       json["deposit"].push_back(deposit);
+      for (const std::vector<int>& line : release) {
+        auto metres = Json::array();
+        for (const int half : line) metres.push_back(0.5 * half * shown.cell);
+        json["release"].push_back(std::move(metres));
+      }
     }
   }
-  json["release"] =
-      lines_of(isolines(grid, counts.scene.release_thickness, counts.scene.threshold, AtEdge::close), window);
-  json["survey"] = Json::array();
+  if (!input.ensemble.table.slides)
+    json["release"] =
+        lines_of(isolines(grid, counts.scene.release_thickness, counts.scene.threshold, AtEdge::close), window);
   if (input.survey && !input.survey->polygons.empty())
     json["survey"] = lines_of(rings(input.survey->polygons), window);
   else if (input.survey && !input.survey->footprint.empty())

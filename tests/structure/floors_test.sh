@@ -21,7 +21,7 @@ floors() {
       ;;
     postprocess)
       printf '%s\n' options survey fields hazard score writers maps 'picture three_d' report \
-        'ensemble compare' slides .
+        'ensemble compare' .
       ;;
   esac
 }

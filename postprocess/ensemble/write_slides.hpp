@@ -10,7 +10,7 @@
 
 #include "postprocess/ensemble/member_rows.hpp"
 #include "postprocess/ensemble/page.hpp"
-#include "postprocess/slides/slide_maps.hpp"
+#include "postprocess/ensemble/slide_maps.hpp"
 
 namespace talus::postprocess {
 

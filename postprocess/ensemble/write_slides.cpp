@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/slides/write_slides.hpp"
+#include "postprocess/ensemble/write_slides.hpp"
 
 #include <cmath>
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // slides.nc: the table of the slides.
 #include "postprocess/ensemble/netcdf_members.hpp"
+#include "postprocess/ensemble/write_slides.hpp"
 #include "postprocess/maps/nc_grid.hpp"
-#include "postprocess/slides/write_slides.hpp"
 
 namespace talus::postprocess {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/slides/slide_maps.hpp"
+#include "postprocess/ensemble/slide_maps.hpp"
 
 #include <algorithm>
 #include <cmath>
