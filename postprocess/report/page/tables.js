@@ -119,7 +119,12 @@ export function drawFindings(data) {
         "tr",
         {},
         h("td", {}, severities[f.severity]),
-        h("td", { class: "plain", "data-finding": f.name }, f.message, h("div", { class: "note" }, h("code", {}, f.name))),
+        h(
+          "td",
+          { class: "plain", "data-finding": f.name },
+          f.message,
+          h("div", { class: "note" }, h("code", {}, f.name)),
+        ),
         h("td", {}, h("code", {}, `[${f.stage}]`)),
       );
   document.getElementById("findings-section").hidden = findings.length === 0;

@@ -147,9 +147,10 @@ TEST(ObstacleRecorder, tells_the_impulse_and_the_largest_mean_force) {
   history.at("obstacle_wall_impulse_x_N_s").values = {0, 3, 6, 6};
   history.at("obstacle_wall_impulse_y_N_s").values = {0, 0, 4, 4};
   history.at("obstacle_wall_impulse_z_N_s").values = {0, 0, 0, 1};
-  const std::vector<std::string> lines = recorder.conclusions(history);
-  ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0], "obstacle wall: impulse (6, 4, 1) N s, largest mean force over 0.5 s 10 N until t = 1.00 s");
+  ::testing::internal::CaptureStderr();
+  recorder.conclude(history);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "obstacle wall: impulse (6, 4, 1) N s, largest mean force over 0.5 s 10 N until t = 1.00 s\n");
 }
 
 }  // namespace
