@@ -281,7 +281,10 @@ void define_runs(py::module_& m) {
   py::class_<Plan>(m, "Plan", "A run before its first step.")
       .def_property_readonly("grid", [](const Plan& plan) { return dict_of(plan.grid()); })
       .def_property_readonly("points", &Plan::points, "Number of material points at the start.")
-      .def_property_readonly("warnings", &Plan::warnings)
+      .def_property_readonly(
+          "findings",
+          [](const Plan& plan) { return py::module_::import("json").attr("loads")(to_json(plan.findings())); },
+          "Advice, warnings and overridden refusals: dictionaries as in score.json.")
       .def(
           "description",
           [](const Plan& plan, const std::string& on) {

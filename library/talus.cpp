@@ -157,10 +157,12 @@ Domain make_domain(Raster bed, Raster thickness, double layer_height, std::array
 Site prepare(const recipe::Recipe& recipe) {
   const ThreadsOfLibraries threads(thread_limit());
   const auto options = recipe.read<preprocess::Options>("preprocess");
+  Findings found("preprocess", options.accept);
   preprocess::Prepared prepared = preprocess::prepare(options, preprocess::Points::seeded);
   const Facts inputs = preprocess::checksums_of(prepared.inputs);
   prepared.domain.provenance = preprocess::provenance_of(
       context_of(recipe), inputs, preprocess::marks_of(recipe, inputs), preprocess::facts_of(prepared));
+  prepared.domain.findings = found.list();
   return {.domain = std::move(prepared.domain),
           .obstacles = std::move(prepared.obstacles),
           .obstacle_voxel = prepared.obstacle_voxel};
@@ -172,12 +174,12 @@ Plan::Plan(Site site, const recipe::Recipe& recipe)
   const solver::SolveOptions options = options_of(site, recipe);
   plan_ = solver::plan(std::move(site.domain), options);
   for (const std::string& reason : plan_->reasons) log_info(reason);
-  solver::log_findings(*plan_);
+  solver::add_findings_of(*plan_);
 }
 
 const MapGrid& Plan::grid() const { return plan_->domain->grid; }
 std::size_t Plan::points() const { return plan_->scene.points.size(); }
-const std::vector<std::string>& Plan::warnings() const { return plan_->warnings; }
+std::vector<Finding> Plan::findings() const { return solver::findings_of(*plan_); }
 
 std::vector<std::string> Plan::description(On on) const {
   const ThreadsOfLibraries threads(thread_limit());
@@ -202,6 +204,7 @@ Result run(const Plan& plan, On on) {
 
 Result run(const Plan& plan, On on, Keeper& keeper) {
   const ThreadsOfLibraries threads(thread_limit());
+  const Findings found("solve", plan.plan_->options.accept);
   solver::RunTimer timer;
   solver::RunLoop loop(plan.plan_, solver::make_device(solver::choose_device(on)));
   MemoryKeeper memory(loop, keeper);
@@ -210,16 +213,18 @@ Result run(const Plan& plan, On on, Keeper& keeper) {
   result.summary.scene = plan.scene_;
   result.summary.title = plan.title_;
   result.summary.stop_reason = loop.step_to_end(memory, true);
-  result.summary.provenance = solver::facts_of(*plan.plan_);
+  result.summary.provenance = plan.plan_->domain->provenance;
   result.summary.provenance.emplace_back(recipe_of_run, plan.mark_);
   result.summary.provenance.emplace_back(run_id, new_run_id());
   loop.memory().wall_time = timer.seconds();
   const solver::SolverState state = loop.stepper().solver().state();
   const solver::RunEnd end = loop.end(state);
   loop.measure(end, result.summary);
-  for (const std::string& line : loop.history().conclusions()) log_info(line);
-  for (const std::string& line : loop.history().warnings()) log_warning(line);
-  for (const std::string& fault : solver::insane(result.summary.sanity)) log_warning(fault);
+  loop.history().conclude();
+  solver::say_sanity(result.summary.sanity);
+  result.summary.places = solver::places_of(*plan.plan_);
+  result.summary.findings = plan.findings();
+  result.summary.findings.insert(result.summary.findings.end(), found.list().begin(), found.list().end());
   result.maps = solver::final_maps(end, loop.stepper().solver().thickness());
   result.frames = std::move(memory.frames);
   result.history = loop.history().rows();

@@ -24,6 +24,7 @@
 #include "common/error.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/run/run_file.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/context.hpp"
 #include "solver/parallel/on.hpp"
 
@@ -73,8 +74,8 @@ class Plan {
   std::size_t points() const;
   /// A line each on what is on, memory, steps and time, as talus-solve --plan prints them. Takes a few steps.
   std::vector<std::string> description(On on = On::automatic) const;
-  /// Warnings, a sentence each.
-  const std::vector<std::string>& warnings() const;
+  /// Advice, warnings and overridden refusals of the site and the plan.
+  std::vector<Finding> findings() const;
 
  private:
   friend Result run(const Plan& plan, On on, Keeper& keeper);
