@@ -55,9 +55,10 @@ struct BudgetScene {
 
   /// Counts with what members change, and those left out that are not to be run.
   EnsembleCounts noted() const {
-    EnsembleCounts counts =
-        empty_counts({.scene = "heap", .title = "heap", .grid = domain->grid, .threshold = asked.map_threshold},
-                     table.count, {0, table.count}, {});
+    EnsembleScene scene;
+    scene.grid = domain->grid;
+    scene.threshold = asked.map_threshold;
+    EnsembleCounts counts = empty_counts(std::move(scene), table.count, {0, table.count}, {});
     members.note_changes(counts);
     return counts;
   }
@@ -145,27 +146,6 @@ TEST_P(BudgetRuns, name_what_the_program_settled_for_the_run_itself) {
   EXPECT_EQ(scene.values_of(0).front(),
             settled == Integrator::explicit_ ? "solve.integrator=explicit" : "solve.integrator=column-implicit");
   expect_runs_by_hand(scene, GetParam());
-}
-
-TEST_P(BudgetRuns, that_fail_are_named_with_their_reason) {
-  // A hundredth of the modulus is so soft that the weight alone would squash the heap: implausible.
-  const BudgetScene scene(heap_recipe() + budget_table + "modulus_factor = 0.01\n", small_heap());
-  const EnsembleCounts counts = scene.run(GetParam());
-  ASSERT_EQ(counts.count(MemberState::failed), 1);
-  EXPECT_EQ(counts.states[scene.place("modulus")], MemberState::failed);
-  EXPECT_NE(counts.failures.front().words.find("weight"), std::string::npos) << counts.failures.front().words;
-}
-
-TEST_P(BudgetRuns, keep_what_they_alone_were_insisted_on) {
-  const BudgetScene scene(
-      heap_recipe("accept = [\"weight-strain\", \"slow-waves\"]\n") + budget_table + "modulus_factor = 0.01\n",
-      small_heap());
-  const EnsembleCounts counts = scene.run(GetParam());
-  ASSERT_EQ(counts.states[scene.place("modulus")], MemberState::counted);
-  EXPECT_TRUE(fact(counts.provenance, "accepted.weight-strain")
-                  .starts_with(fmt::format("in member {}", scene.place("modulus"))))
-      << "the stiffness of the others is that of the recipe";
-  EXPECT_TRUE(counts.warnings.empty()) << "what is insisted on is said once: " << counts.warnings.front().words;
 }
 
 // A block of strong ground slides to rest on an incline: s = v^2 cos(slope) / 2 g (mu cos(slope) - sin(slope)).
