@@ -26,7 +26,7 @@ struct Written {
                     "recipe.toml", recipe::to_toml(scene.options, "preprocess", false) + "\n" + ensemble)),
                 scene.scratch / "out", false, "talus-preprocess recipe.toml"},
         options(context.recipe.read<Options>("preprocess")),
-        base{options, read_scene(options, &memory), memory, {}, {{domain_id, "base"}}, {}},
+        base{options, read_scene(options, &memory), memory, {}, {{domain_id, "base"}}, {}, {}},
         plan(*plan_ensemble(context.recipe, options)) {
     std::filesystem::create_directories(context.out);
     if (plan.options.elevation_error.acts())

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What runs may ask for, with several at a time: on a GPU their kernels are started as one, or alone where the run has
-// some that are not.
+// What runs may ask for, with several at a time: the results are those of one at a time.
 #include <algorithm>
 #include <filesystem>
 #include <string>
