@@ -131,9 +131,14 @@ Domain make_domain(Raster bed, Raster thickness, double layer_height, std::array
   if (!same || bed.values.size() != grid.count() || thickness.values.size() != grid.count())
     throw DataError({"bed and thickness in memory: not one grid", "a column of the grid stands over each cell",
                      "Give rasters with the same cells, and a value for each"});
+  if (!(grid.cell > 0) || *std::min_element(per_cell.begin(), per_cell.end()) < 1)
+    throw DataError({fmt::format("domain in memory: cells of {:g} m with {} x {} x {} points", grid.cell, per_cell[0],
+                                 per_cell[1], per_cell[2]),
+                     "both are positive", "Give the width of a cell in metres, and one point or more along each axis"});
   double volume = 0;
   for (const double t : thickness.values) {
-    if (t < 0) throw DataError({fmt::format("thickness in memory: {:g} m", t), "it is negative", "Check its sign"});
+    if (t < 0 || std::isinf(t))
+      throw DataError({fmt::format("thickness in memory: {:g} m", t), "it is 0 or more", "Check its sign and unit"});
     if (t > 0) volume += t;
   }
   if (!(volume > 0)) throw DataError({"thickness in memory: nowhere above 0", "nothing would move", "Check its unit"});

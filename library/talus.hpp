@@ -50,7 +50,8 @@ struct Site {
 };
 
 /// The domain of a bed and a released thickness on one grid, seeded with `per_cell` points along x, y and the height of
-/// a layer [m] (0: by the thickness). Throws DataError: other grids, no thickness, a negative one.
+/// a layer [m] (0: by the thickness). Throws DataError: other grids, no thickness, a negative or infinite one, no width
+/// of cells.
 Domain make_domain(Raster bed, Raster thickness, double layer_height = 0, std::array<int, 3> per_cell = {2, 2, 2});
 
 /// The site of [preprocess] of a recipe, from the files that it names. Nothing is written. Throws RecipeError,

@@ -156,7 +156,10 @@ TEST(Library, refuses_a_domain_that_cannot_be_and_a_recipe_of_many_runs) {
   EXPECT_THROW(make_domain(bed, mass), DataError) << "nothing moves";
   mass.values[40] = -1;
   EXPECT_THROW(make_domain(bed, mass), DataError);
+  mass.values[40] = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(make_domain(bed, mass), DataError);
   mass.values[40] = 1;
+  EXPECT_THROW(make_domain(bed, mass, 0, {2, 2, 0}), DataError);
   mass.grid.west += 1;
   EXPECT_THROW(make_domain(bed, mass), DataError);
   const auto many = Recipe::parse("[ensemble]\nmembers = 3\n[solve]\nend_time_s = 1\n");
