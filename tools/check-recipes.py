@@ -42,7 +42,7 @@ import time
 STAGES = ("preprocess", "solve", "postprocess")
 SECONDS_A_POINT = 10e-6  # of processor time that talus-preprocess may take to make and write a point it announced
 # Keys that name files, places or other items of a recipe: a random text says nothing about numbers.
-LEFT_OUT = {"end_time_s", "accept", "working_crs", "classes_m", "animation"}
+LEFT_OUT = {"end_time_s", "accept", "working_crs", "classes_m"}
 # Tables that nothing can be said in without a file.
 LEFT_OUT_TABLES = {"solve.shaking"}
 Key = collections.namedtuple("Key", "table name default words low high open_low open_high whole")
