@@ -16,13 +16,9 @@ TEST(SortsOnAGpu, are_frequent_only_for_many_points_with_wide_stencils) {
 }
 
 TEST(DriftBetweenSorts, is_wide_where_neither_order_nor_colours_of_blocks_bound_it) {
-  EXPECT_EQ(drift_between_sorts<GpuDevice>(true, false).columns, 1);
-  EXPECT_EQ(drift_between_sorts<CpuDevice>(false, false).columns, 1);
-  const Drift alone = drift_between_sorts<GpuDevice>(false, false),
-              beside = drift_between_sorts<GpuDevice>(false, true);
-  EXPECT_GT(beside.columns, 1);
-  EXPECT_GT(alone.columns, beside.columns) << "empty nodes cost others too";
-  EXPECT_GT(alone.layers, beside.layers);
+  EXPECT_EQ(drift_between_sorts<GpuDevice>(true).columns, 1);
+  EXPECT_EQ(drift_between_sorts<CpuDevice>(false).columns, 1);
+  EXPECT_GT(drift_between_sorts<GpuDevice>(false).columns, 1);
 }
 
 }  // namespace
