@@ -64,7 +64,7 @@ class Budget : public ::testing::Test {
     counts.leave_out(counted + 1, "no survey");
     counts.leave_out(counted + 2, "");
     counts.changes = {{1, "something else\nsolve.a=1\nsolve.b=2"}};
-    counts.warnings = {{1, "packed fourfold"}};
+    counts.add_finding(1, {.name = "dense-packing", .message = "packed fourfold"});
     ensemble_.counts = std::move(counts);
     rows_ = member_rows(ensemble_, options_, survey_);
     return budget_table(ensemble_, rows_, options_);

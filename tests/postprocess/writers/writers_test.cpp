@@ -104,7 +104,7 @@ TEST_F(Outputs, of_the_page_on_extension_are_written) {
   EXPECT_THROW(profile->check(job), DataError) << "there is no thalweg";
   const MapGrid& grid = job.run.maps.grid;
   const double y = grid.south + 1.5 * grid.cell, x = grid.west + 1.5 * grid.cell;
-  job.thalweg = {.line = {{x, y}, {x + grid.cell, y}}, .distance = {0, grid.cell}};
+  job.thalweg = {.line = {{x, y}, {x + grid.cell, y}}, .distance = {0, grid.cell}, .given = true, .origin = "test"};
   profile->check(job);
   const auto values = sample_along(job.thalweg, grid, job.run.maps.deposit_thickness);
   EXPECT_EQ(profile->write(job), Files{out_ / "profile.csv"});
