@@ -149,8 +149,7 @@ TEST_P(BudgetRuns, name_what_the_program_settled_for_the_run_itself) {
 }
 
 // A block of strong ground slides to rest on an incline: s = v^2 cos(slope) / 2 g (mu cos(slope) - sin(slope)).
-constexpr double degree = std::numbers::pi / 180, gravity = 9.81;
-constexpr double slope = 10 * degree, start_speed = 5, friction_deg = 25;
+constexpr double friction_deg = 25;
 
 double block_way(double mu) {
   return start_speed * start_speed * std::cos(slope) / (2 * gravity * (mu * std::cos(slope) - std::sin(slope)));

@@ -10,8 +10,6 @@
 namespace talus::solver::testing {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180, gravity = 9.81;
-constexpr double slope = 10 * degree, start_speed = 5;
 constexpr double least = 20, most = 30;  ///< friction angle of the bed, uniform between them [deg]
 
 /// The deceleration of a rigid block along the incline [m/s2].

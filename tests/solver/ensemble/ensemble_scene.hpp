@@ -3,6 +3,7 @@
 // A small ensemble for the tests: a heap that slides down a plane, with members that differ in keys of every kind.
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,9 @@
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
+
+/// Of blocks on an incline: the incline, and the speed down it at the start [m/s].
+inline constexpr double degree = std::numbers::pi / 180, gravity = 9.81, slope = 10 * degree, start_speed = 5;
 
 /// The heap: 512 points on a slope of 17 degrees.
 inline Domain small_heap() {
