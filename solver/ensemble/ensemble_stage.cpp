@@ -304,7 +304,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
   remove_for_good(unfinished);
   context.results.push_back(e.counts);
   log_info(fmt::format("{} members counted, {} failed, in {} s", counts.count(MemberState::counted),
-                       counts.failures.size(), seconds()));
+                       counts.count(MemberState::failed), seconds()));
   return {{"wall_time_s", seconds()}, {"members", std::to_string(counts.count(MemberState::counted))}};
 }
 

@@ -3,8 +3,6 @@
 // Gravity, the velocity at the start, and forces on parts of the mass.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -27,8 +25,8 @@ struct GravityOptions {
  private:
   static void need_three(recipe::Visitor& v, const char* key, const std::vector<double>& values) {
     v.needs(values.size() == 3,
-            {fmt::format("[solve] {} has {} numbers", key, values.size()), "it is a vector: east, north, up",
-             fmt::format("Give three: {} = [0.0, 0.0, 0.0]", key)});
+            {"[solve] " + std::string(key) + " has " + std::to_string(values.size()) + " numbers",
+             "it is a vector: east, north, up", "Give three: " + std::string(key) + " = [0.0, 0.0, 0.0]"});
   }
 };
 

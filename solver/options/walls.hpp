@@ -3,8 +3,6 @@
 // Plane walls and gates.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -43,8 +41,8 @@ struct WallOptions {
 
 /// This function declares that there are as many walls as kernels hold, at most.
 inline void need_few(recipe::Visitor& v, const std::vector<WallOptions>& walls) {
-  v.needs(walls.size() <= most_walls, {fmt::format("[[solve.wall]] is given {} times", walls.size()),
-                                       fmt::format("at most {} walls fit", most_walls), "Leave some out"});
+  v.needs(walls.size() <= most_walls, {"[[solve.wall]] is given " + std::to_string(walls.size()) + " times",
+                                       "at most " + std::to_string(most_walls) + " walls fit", "Leave some out"});
 }
 
 }  // namespace talus::solver

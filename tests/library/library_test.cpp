@@ -170,7 +170,7 @@ TEST(Library, refuses_a_domain_that_cannot_be_and_a_recipe_of_many_runs) {
 
 TEST(Library, writes_the_outputs_of_a_result) {
   const test::Scratch scratch;
-  const Recipe recipe = moving(coulomb + "[postprocess]\nreport = false\n");
+  const Recipe recipe = moving(coulomb + "[postprocess]\noutputs = []\n");
   const Result result = run_on_cpu(slope(), recipe);
   const auto files = write(result, recipe, scratch / "out");
   for (const char* name : {"out/run.h5", "out/score.json", "out/maps/deposit_thickness.tif"})

@@ -13,7 +13,7 @@ import warnings
 import talus
 from scene import FIRST, HERE, RECIPE
 
-SHORT = {"solve.end_time_s": 0.1, "postprocess.report": False}
+SHORT = {"solve.end_time_s": 0.1, "postprocess.outputs": []}
 
 
 class ProgramsTest(unittest.TestCase):

@@ -180,12 +180,14 @@ TEST_F(SurveyTest, brings_sigma_to_its_grid_with_the_range_its_file_names) {
 TEST_F(SurveyTest, warns_where_the_range_of_its_errors_is_not_known) {
   options_.difference = raster("difference.tif", small_grid(), some_change());
   options_.sigma_m = 0.25;
-  const auto survey = read_survey(options_, run_.maps, 1.0);
-  EXPECT_EQ(survey->error.correlation_length, 0);
-  ASSERT_EQ(survey->notes.size(), 1u);
-  EXPECT_NE(survey->notes[0].find("Give correlation_length_m"), std::string::npos) << survey->notes[0];
+  const auto found = [&] {
+    return test::findings_of([&] { EXPECT_EQ(read_survey(options_, run_.maps, 1.0)->error.correlation_length, 0); });
+  };
+  ASSERT_EQ(found().size(), 1u);
+  EXPECT_EQ(found()[0].name, "unknown-correlation-length");
+  EXPECT_NE(found()[0].message.find("Give correlation_length_m"), std::string::npos) << found()[0].message;
   options_.resamples = 0;
-  EXPECT_TRUE(read_survey(options_, run_.maps, 1.0)->notes.empty()) << "nobody draws";
+  EXPECT_TRUE(found().empty()) << "nobody draws";
 }
 
 TEST_F(SurveyTest, leaves_out_what_was_measured_without_a_sigma) {
