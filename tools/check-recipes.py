@@ -238,9 +238,11 @@ def check_history(out, text):
     rows = list(csv.DictReader((out / "history.csv").open()))
     if not rows:
         raise Fault("history.csv is empty")
-    for row in rows:
+    for before, row in zip([rows[0], *rows], rows):
+        # No force is known of a time in which matter left.
+        may_lack = ("gauge", "ground_force") if row["outflow_m3"] != before["outflow_m3"] else ("gauge",)
         for name, value in row.items():
-            if not math.isfinite(float(value)) and not name.startswith("gauge"):
+            if not math.isfinite(float(value)) and not name.startswith(may_lack):
                 raise Fault(f"history.csv: {name} = {value} at {row.get('time_s')} s")
 
 

@@ -87,9 +87,9 @@ void add_finding(Finding finding) {
     list->list_.push_back(finding);
 }
 
-void add_findings(const std::vector<Finding>& findings) {
+void add_findings(const std::vector<Finding>& findings, const std::string& repeated) {
   for (const Finding& finding : findings) {
-    if (!log_is_kept_back() && finding.severity == Severity::warning) log_finding(finding);
+    if (!log_is_kept_back() && finding.name == repeated) log_finding(finding);
     for (Findings* list = innermost; list != nullptr; list = list->passes_on_ ? list->outer_ : nullptr)
       list->list_.push_back(finding);
   }

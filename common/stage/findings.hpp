@@ -69,7 +69,7 @@ class Findings {
 
  private:
   friend void add_finding(Finding finding);
-  friend void add_findings(const std::vector<Finding>& findings);
+  friend void add_findings(const std::vector<Finding>& findings, const std::string& repeated);
   friend void refuse_unless_accepted(const std::string&, const Fault&, std::vector<FindingNumber>);
   friend std::vector<Finding> findings_so_far();
   friend bool log_is_kept_back();
@@ -84,8 +84,8 @@ class Findings {
 
 /// Adds a finding to the lists of the thread and logs it. Of a finding without a stage the innermost list gives it.
 void add_finding(Finding finding);
-/// Adds findings of a stage before. Of these the log has warnings alone.
-void add_findings(const std::vector<Finding>& findings);
+/// Adds findings of a stage before. Of these the log has those of the name `repeated` alone.
+void add_findings(const std::vector<Finding>& findings, const std::string& repeated = "");
 /// Adds advice.
 void advise(std::string name, std::string message, std::vector<FindingNumber> numbers = {});
 /// Adds a warning.

@@ -29,7 +29,7 @@ void report_profile(const RunSummary& summary, const AnyDevice& device, const st
 }  // namespace
 
 void add_findings_of(const Plan& plan) {
-  add_findings(plan.domain->findings);
+  add_findings(plan.domain->findings, "coarse-grid");
   for (const Finding& finding : plan.findings) add_finding(finding);
 }
 

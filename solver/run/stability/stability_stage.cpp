@@ -42,7 +42,7 @@ Facts find_stability(StageContext& context, const SolveOptions& options, const A
       fmt::format("factor of safety: {} material points; tan(friction) and cohesion are divided until no "
                   "equilibrium is left",
                   search.scene().points.size()));
-  add_findings(domain.findings);
+  add_findings(domain.findings, "coarse-grid");
   if (context.check_only) return {};
   const auto begun = std::chrono::steady_clock::now();
   const Stability found = search.run();

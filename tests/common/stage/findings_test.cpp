@@ -64,13 +64,13 @@ TEST(Findings, go_from_the_innermost_list_to_the_first_that_keeps_them_back) {
   EXPECT_EQ(stage.list()[1].stage, "solve");
 }
 
-TEST(Findings, of_a_stage_before_are_added_as_they_are_and_warnings_said) {
-  const std::vector<Finding> before{test::finding(Severity::advice, "a", "advice"),
-                                    test::finding(Severity::warning, "b", "coarse"),
-                                    test::finding(Severity::refusal, "c", "accepted before")};
+TEST(Findings, of_a_stage_before_are_added_as_they_are_and_one_of_them_said) {
+  const std::vector<Finding> before{
+      test::finding(Severity::advice, "a", "advice"), test::finding(Severity::warning, "b", "coarse"),
+      test::finding(Severity::warning, "d", "said before"), test::finding(Severity::refusal, "c", "accepted before")};
   testing::internal::CaptureStderr();
   const Findings stage("solve");
-  add_findings(before);
+  add_findings(before, "b");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "warning: coarse\n");
   EXPECT_EQ(stage.list(), before);
 }
