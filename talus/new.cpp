@@ -38,7 +38,9 @@ struct Reading {
   std::string keys() const {
     std::string text;
     if (utm) text += "working_crs = \"utm\"            # the models are not in metres\n";
-    text += "\n[preprocess.voids]\nfill = true                    # cells without data inside the models\n";
+    text +=
+        "\n[preprocess.voids]\nfill_m2 = 1e5                  # cells without data inside the models, up to this "
+        "area\n";
     if (align)
       text +=
           "\n[preprocess.coregistration]\nmode = \"apply\"                 # the later model lies beside the earlier\n";
