@@ -18,8 +18,8 @@
 
 namespace talus::preprocess {
 
-/// One [[preprocess.bed.zone]]: Voellmy's numbers for some heights or some ground, a row of the tables by which guidelines
-/// give them. What is not given sets no bound.
+/// One [[preprocess.bed.zone]]: Voellmy's numbers for some heights or some ground, a row of the tables by which
+/// guidelines give them. What is not given sets no bound.
 struct BedZone {
   std::filesystem::path polygons{};
   std::optional<double> from{}, to{};            ///< elevations [m]

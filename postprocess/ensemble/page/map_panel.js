@@ -182,7 +182,7 @@ export class MapPanel {
       (run.slides
         ? `Of ${number(run.counted)} counted slides; nothing is drawn where none came.`
         : this.data.budget
-          ? "Largest less smallest thickness of the deposit over the recipe itself and members that differ in one thing."
+          ? "Largest less smallest thickness of the deposit over the recipe and members that differ in one thing."
           : "Over all counted members; where one did not come, it counts as 0 (times: as never).");
     document
       .getElementById("legend")

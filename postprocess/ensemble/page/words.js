@@ -88,8 +88,8 @@ function budgetMethod(run) {
   return [
     item("Every member is a whole run of the model. Each but the first, which is the recipe itself, differs from it in "
       + "one thing; what the recipe leaves to the program is settled once, for all of them."),
-    item("A map of spread has, in each cell, the largest less the smallest thickness of the deposit over these runs. It "
-      + "is no probability."),
+    item("A map of spread has, in each cell, the largest less the smallest thickness of the deposit over these runs. "
+      + "It is no probability."),
     item(`Outlines are of cells that were thicker than ${run.threshold} m; of a run on other cells, by the centres of `
       + "these cells."),
   ];
