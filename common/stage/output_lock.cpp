@@ -18,8 +18,8 @@
 
 #include <fmt/format.h>
 
+#include "common/stage/console.hpp"
 #include "common/stage/context.hpp"
-#include "common/stage/findings.hpp"
 #include "common/stage/interrupt.hpp"
 #include "common/stage/stage.hpp"
 
@@ -86,10 +86,11 @@ int lock(const fs::path& file, bool& is_held) {
     while (code == EINTR);
     if (code == EWOULDBLOCK) refuse_second(file, descriptor);
     if (code != 0) {
-      warn("no-file-locks", fmt::format("{}: this file system knows no locks ({}): nothing keeps a second process out "
-                                        "of the folder; see that none "
-                                        "writes there",
-                                        file.parent_path().string(), words_of(code)));
+      // No finding: it is of the folder, and results are the same without it.
+      log_warning(fmt::format(
+          "{}: this file system knows no locks ({}): nothing keeps a second process out of the folder; see that none "
+          "writes there",
+          file.parent_path().string(), words_of(code)));
       return descriptor;
     }
     struct stat mine {

@@ -8,6 +8,7 @@
 
 #include "solver/ensemble/member_run.hpp"
 #include "solver/ensemble/run_members.hpp"
+#include "solver/ensemble/variations.hpp"
 #include "solver/run/simulation.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 #include "tests/solver/plans.hpp"

@@ -4,6 +4,7 @@
 #include "solver/parallel/recording.hpp"
 
 #include "solver/parallel/for_each.hpp"
+#include "solver/parallel/launch.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
