@@ -133,8 +133,8 @@ export function drawBudget(data) {
       "Each line is a run that differs from the recipe itself in one thing. Deposit elsewhere: share of the volume " +
         "of the recipe\u2019s deposit that lies in other cells in the other run, volumes set equal; doubts are about " +
         "the slide (brown) or about the computation (blue). Run-out and largest speed: other run less the " +
-        "recipe\u2019s. Overlap: footprint of both over footprint of either. Time: wall time, runs beside one another. " +
-        "Doubts of several lines need not add up, and what no line asks about is not in this table. The map shows " +
+        "recipe\u2019s. Overlap: footprint of both over footprint of either. Time: wall time, runs beside one " +
+        "another. Doubts of several lines need not add up, and what no line asks about is not in this table. The map shows " +
         "where the deposit differs.",
     ),
   );
