@@ -24,8 +24,8 @@
 #include "common/error.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/run/run_file.hpp"
-#include "common/stage/findings.hpp"
 #include "common/stage/context.hpp"
+#include "common/stage/findings.hpp"
 #include "solver/parallel/on.hpp"
 
 namespace talus {

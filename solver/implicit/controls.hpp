@@ -28,7 +28,7 @@ struct NewtonControls {
 /// How the linear system of an iteration is solved.
 struct LinearControls {
   LinearSolver solver = LinearSolver::pcg;
-  int iterations = 5000;   ///< of conjugate gradients, at most
+  int iterations = 5000;  ///< of conjugate gradients, at most
 };
 
 /// How implicit steps are taken.

@@ -134,8 +134,8 @@ export function drawBudget(data) {
         "of the recipe\u2019s deposit that lies in other cells in the other run, volumes set equal; doubts are about " +
         "the slide (brown) or about the computation (blue). Run-out and largest speed: other run less the " +
         "recipe\u2019s. Overlap: footprint of both over footprint of either. Time: wall time, runs beside one " +
-        "another. Doubts of several lines need not add up, and what no line asks about is not in this table. The map shows " +
-        "where the deposit differs.",
+        "another. Doubts of several lines need not add up, and what no line asks about is not in this table. The " +
+        "map shows where the deposit differs.",
     ),
   );
 }

@@ -149,8 +149,7 @@ TEST(SlowColumns, counts_what_the_bed_takes) {
 
 /// Grains over a rough bed: mu between 0.4 and 0.6, over 0.02 m, in a mass of 2000 kg/m3.
 BaseFriction<double> grains() {
-  return {
-      .law = FrictionLaw::pouliquen, .uniform = {{0.4, 0.2, 0.42, 0.02}, 0}, .constants = {0.136, 0, 2000}};
+  return {.law = FrictionLaw::pouliquen, .uniform = {{0.4, 0.2, 0.42, 0.02}, 0}, .constants = {0.136, 0, 2000}};
 }
 
 TEST(MeasureCoefficients, gives_columns_the_friction_of_their_depth_and_mean_speed) {
