@@ -4,6 +4,7 @@
 // describe(Visitor&) names every key once; the reader, the template and the used recipe are visitors of it.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
@@ -101,7 +102,7 @@ void fixed_list(Visitor& v, std::string_view key, const std::vector<T*>& parts, 
   }
   const bool fits = values.size() == parts.size();
   for (std::size_t i = 0; i < parts.size(); ++i) *parts[i] = fits ? values[i] : none;
-  const bool known = *parts[0] == *parts[0] && *parts[0] != Limits::min();
+  const bool known = !std::isnan(static_cast<double>(*parts[0])) && *parts[0] != Limits::min();
   v.needs(known, {place + " " + std::string(key) + " is too long or too short",
                   "it has " + std::to_string(parts.size()) + " items: " + std::string(help), "Give as many"});
 }
