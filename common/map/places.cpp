@@ -33,7 +33,7 @@ std::optional<std::vector<MapPlace>> places_in(const std::string& text) {
       for (const auto& ring : places.back().rings)
         if (ring.empty()) return std::nullopt;
     }
-  } catch (const std::exception&) {
+  } catch (const Json::exception&) {
     return std::nullopt;
   }
   return places;

@@ -22,9 +22,9 @@ constexpr const char* severities[] = {"advice", "warning", "refusal"};
 
 thread_local Findings* innermost = nullptr;
 
-Severity severity_called(const std::string& word) {
+std::optional<Severity> severity_called(const std::string& word) {
   const auto* const found = std::find(std::begin(severities), std::end(severities), word);
-  if (found == std::end(severities)) throw std::invalid_argument(word);
+  if (found == std::end(severities)) return std::nullopt;
   return static_cast<Severity>(found - std::begin(severities));
 }
 
@@ -49,10 +49,11 @@ Json json_of(const Finding& f) {
   return json;
 }
 
-/// Throws exceptions of the library where the JSON is of something else.
-Finding finding_of(const Json& json) {
-  Finding f{severity_called(json.at("severity").get<std::string>()), json.at("name").get<std::string>(),
-            json.at("message").get<std::string>()};
+/// None, or an exception of the library, where the JSON is of something else.
+std::optional<Finding> finding_of(const Json& json) {
+  const auto severity = severity_called(json.at("severity").get<std::string>());
+  if (!severity) return std::nullopt;
+  Finding f{*severity, json.at("name").get<std::string>(), json.at("message").get<std::string>()};
   for (const auto& [name, number] : json.at("numbers").items()) {
     const Json& value = number.at("value");
     f.numbers.push_back({name, value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>(),
@@ -79,20 +80,20 @@ void Findings::settle() {
   if (!refused_.empty()) throw DataError(std::exchange(refused_, {}));
 }
 
-void add_finding(Finding finding) {
-  finding.message = with_shown_paths(finding.message);
-  if (finding.stage.empty() && innermost != nullptr) finding.stage = innermost->stage_;
-  if (!log_is_kept_back()) log_finding(finding);
+void Findings::keep(const Finding& finding, bool logged) {
+  if (logged && !log_is_kept_back()) log_finding(finding);
   for (Findings* list = innermost; list != nullptr; list = list->passes_on_ ? list->outer_ : nullptr)
     list->list_.push_back(finding);
 }
 
+void add_finding(Finding finding) {
+  finding.message = with_shown_paths(finding.message);
+  if (finding.stage.empty() && innermost != nullptr) finding.stage = innermost->stage_;
+  Findings::keep(finding, true);
+}
+
 void add_findings(const std::vector<Finding>& findings, const std::string& repeated) {
-  for (const Finding& finding : findings) {
-    if (!log_is_kept_back() && finding.name == repeated) log_finding(finding);
-    for (Findings* list = innermost; list != nullptr; list = list->passes_on_ ? list->outer_ : nullptr)
-      list->list_.push_back(finding);
-  }
+  for (const Finding& finding : findings) Findings::keep(finding, finding.name == repeated);
 }
 
 void advise(std::string name, std::string message, std::vector<FindingNumber> numbers) {
@@ -162,8 +163,12 @@ std::optional<std::vector<Finding>> findings_in(const std::string& text) {
   try {
     const Json json = Json::parse(text);
     if (!json.is_array()) return std::nullopt;
-    for (const Json& one : json) findings.push_back(finding_of(one));
-  } catch (const std::exception&) {
+    for (const Json& one : json) {
+      auto finding = finding_of(one);
+      if (!finding) return std::nullopt;
+      findings.push_back(std::move(*finding));
+    }
+  } catch (const Json::exception&) {
     return std::nullopt;
   }
   return findings;

@@ -74,6 +74,9 @@ class Findings {
   friend std::vector<Finding> findings_so_far();
   friend bool log_is_kept_back();
 
+  /// Adds to the lists of the thread.
+  static void keep(const Finding& finding, bool logged);
+
   std::string stage_;
   std::vector<std::string> accept_;
   bool passes_on_, kept_back_;
