@@ -93,13 +93,19 @@ File::File(File&& other) noexcept
     : id_(std::exchange(other.id_, hid_t{-1})),
       naming_(std::move(other.naming_)),
       writing_(other.writing_),
+      growing_(std::exchange(other.growing_, {})),
       plain_(other.plain_) {}
 
 File::~File() {
+  for (const auto& [path, set] : growing_) H5Dclose(set);
   if (id_ >= 0 && H5Fclose(id_) < 0) end_before_libraries();
 }
 
 void File::close() {
+  while (!growing_.empty()) {
+    const auto node = growing_.extract(growing_.begin());
+    if (H5Dclose(node.mapped()) < 0) fail(node.key());
+  }
   if (H5Fflush(id_, H5F_SCOPE_LOCAL) < 0) fail("the end of the file");
   if (H5Fclose(std::exchange(id_, hid_t{-1})) >= 0) return;
   end_before_libraries();

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -144,7 +145,7 @@ class File {
   void write_raw(const std::string& path, const Dims& dims, hid_t type, const void* data, std::size_t count);
   void append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
                   std::size_t count);
-  void create_extendible(const std::string& path, const Dims& row, hid_t type);
+  hid_t create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type);
   std::size_t checked_count(const std::string& path, const Dims& expected, hid_t type) const;
   std::size_t checked_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row, hid_t type) const;
   [[noreturn]] void refuse_shape(const std::string& path, const Dims& found, const std::string& why) const;
@@ -155,6 +156,7 @@ class File {
   hid_t id_;
   Naming naming_;
   bool writing_;
+  std::map<std::string, hid_t> growing_;  ///< datasets of append(), open so that HDF5 keeps their last, partial chunks
   bool plain_ = false;
 };
 

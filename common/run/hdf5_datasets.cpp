@@ -49,35 +49,37 @@ void File::write_raw(const std::string& path, const Dims& dims, hid_t type, cons
   }
 }
 
-void File::create_extendible(const std::string& path, const Dims& row, hid_t type) {
-  Dims dims{0}, limit{H5S_UNLIMITED}, whole{hsize_t{1} << 15};
+hid_t File::create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type) {
+  Dims dims{0}, limit{H5S_UNLIMITED}, whole{std::clamp<hsize_t>(64 * rows, 1 << 10, 1 << 15)};
   dims.insert(dims.end(), row.begin(), row.end());
   limit.insert(limit.end(), row.begin(), row.end());
   whole.insert(whole.end(), row.begin(), row.end());
   const Id space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), limit.data()), H5Sclose);
   const Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   set_compression(list, chunk_of(whole));
-  Id set(H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose);
-  if (set.bad() || !set.close()) fail(path);
+  const hid_t set = H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT);
+  if (set < 0) fail(path);
+  return set;
 }
 
 void File::append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
                       std::size_t count) {
   if (rows * product(row) != count)
     throw std::logic_error(fmt::format("{}: {} values do not fill {} rows", path, count, rows));
-  if (!exists(path)) create_extendible(path, row, type);
+  auto found = growing_.find(path);
+  if (found == growing_.end()) found = growing_.emplace(path, create_extendible(path, rows, row, type)).first;
   if (count == 0) return;
-  Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  const hid_t set = found->second;
   Dims start = dims(path), block = start;
   block[0] = rows;
   Dims grown = start;
   grown[0] += rows;
   std::fill(start.begin() + 1, start.end(), 0);
-  if (set.bad() || H5Dset_extent(set, grown.data()) < 0) fail(path);
+  if (H5Dset_extent(set, grown.data()) < 0) fail(path);
   const Id space(H5Dget_space(set), H5Sclose);
   const Id memory(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
   if (H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) < 0 ||
-      H5Dwrite(set, type, memory, space, H5P_DEFAULT, data) < 0 || !set.close()) {
+      H5Dwrite(set, type, memory, space, H5P_DEFAULT, data) < 0) {
     fail(path);
   }
 }
