@@ -32,6 +32,8 @@ class Writer {
   /// Patterns of the files of an earlier run that are deleted before the first writer starts. A writer whose files
   /// every run replaces returns none.
   virtual std::vector<std::string> outdated() const { return names(); }
+  /// True if write() may run beside other writers: it calls neither HDF5 nor GDAL, and finds nothing doubtful.
+  virtual bool stands_alone() const { return false; }
   /// Writes the files, each aside and renamed. Returns the paths to print. Throws DataError, Interrupted.
   virtual Files write(const Job& job) const = 0;
 };
@@ -47,7 +49,8 @@ class Writers {
   /// Deletes the outdated files under `out`, in reverse order of writing: score.json, which marks complete results,
   /// goes first.
   void remove_outdated(const std::filesystem::path& out) const;
-  /// Runs the wanted writers. Returns the paths to print.
+  /// Runs the wanted writers, those that stand alone in a thread beside the others, and the last one at the end.
+  /// Returns the paths to print.
   Files write(const Job& job) const;
 
   auto begin() const { return all_.begin(); }

@@ -41,6 +41,7 @@ class PictureWriter : public Writer {
   std::string name() const override { return "map picture"; }
   std::vector<std::string> names() const override { return {"map.png"}; }
   std::vector<std::string> outdated() const override { return {}; }
+  bool stands_alone() const override { return true; }
   Files write(const Job& job) const override { return {write_file(job, "map.png", map_picture(picture_of(job)))}; }
 };
 

@@ -6,6 +6,7 @@
 #include <ranges>
 #include <system_error>
 
+#include "common/stage/in_threads.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/writers/job.hpp"
 
@@ -52,13 +53,20 @@ void Writers::remove_outdated(const fs::path& out) const {
 }
 
 Files Writers::write(const Job& job) const {
+  std::vector<Files> written(all_.size());
+  const auto write_one = [&](std::size_t i) {
+    if (!all_[i]->wanted(job)) return;
+    stop_if_interrupted("writing " + all_[i]->name());
+    written[i] = all_[i]->write(job);
+  };
+  const std::size_t last = all_.size() - 1;
+  in_threads(2, "writing results", [&](std::size_t lane) {
+    for (std::size_t i = 0; i < last; ++i)
+      if (all_[i]->stands_alone() == (lane == 1)) write_one(i);
+  });
+  write_one(last);
   Files files;
-  for (const auto& writer : all_) {
-    if (!writer->wanted(job)) continue;
-    stop_if_interrupted("writing " + writer->name());
-    const Files written = writer->write(job);
-    files.insert(files.end(), written.begin(), written.end());
-  }
+  for (const Files& some : written) files.insert(files.end(), some.begin(), some.end());
   return files;
 }
 

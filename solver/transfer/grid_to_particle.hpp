@@ -72,8 +72,18 @@ struct GridToParticle {
   }
 
   TALUS_HD Sums gather(const Stencil<Real, Shape>& s) const {
+#if !defined(__CUDA_ARCH__)
+    // A CPU tests flags at each of the nodes; the usual ones have a copy of the loop without.
+    if (affine && bound_by_layers && changes && grid.mapping == Mapping::terrain_following) return sum_up<true>(s);
+#endif
+    return sum_up<false>(s);
+  }
+
+  template <bool usual>
+  TALUS_HD Sums sum_up(const Stencil<Real, Shape>& s) const {
     Sums sums;
-    const bool follows = grid.mapping == Mapping::terrain_following;
+    const bool follows = usual || grid.mapping == Mapping::terrain_following, affine = usual || this->affine,
+               bound_by_layers = usual || this->bound_by_layers, has_changes = usual || changes;
     TALUS_UNROLL  // weights looked up by a loop's counter would go through memory
         for (int b = 0; b < Shape::width; ++b) {
       TALUS_UNROLL
@@ -97,7 +107,7 @@ struct GridToParticle {
           rise += v * s.gz[c];
           if (affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
           if (!bound_by_layers) mass += node.w * s.wz[c];
-          if (changes) {
+          if (has_changes) {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
           }
