@@ -52,7 +52,7 @@ class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape> {
                                         static_cast<Real>(settings_.damping), kappa(), softer_});
   }
 
-  Real kappa() const { return static_cast<Real>(settings_.steps.kappa); }
+  Real kappa() const { return static_cast<Real>(settings_.kappa); }
 
   /// The springs along the bed over those across it (T6b) [-]: the modulus of shear over that of uniaxial strain, of
   /// the material where that is most. Where columns meet more than their bed (walls across z, contact points), or stand

@@ -24,8 +24,7 @@ class ExplicitSolver final : public BatchSolver<Real, Device, Shape> {
  private:
   /// Whether momentum and internal forces are scattered apart.
   bool forces_apart() const {
-    const TransferSettings& transfer = settings_.transfer;
-    return transfer.remaps_velocity || transfer.time > 0 || settings_.damping > 0 || settings_.energy_budget;
+    return settings_.remaps_velocity() || settings_.decay_time > 0 || settings_.damping > 0 || settings_.energy_budget;
   }
 
   void resize_nodes(std::size_t count) override {

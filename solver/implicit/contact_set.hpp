@@ -107,8 +107,7 @@ class ContactSet {
   /// stick to begin with, and the first guess of u. `gravity` [m/s2] is that of the step.
   void begin(const NewmarkScheme& scheme, const Walls<double>& walls, const Vec3<double>& gravity) {
     const ImplicitControls& c = parts_.controls;
-    const Vec3<double>& full = parts_.settings.gravity.acceleration;
-    const double g = std::hypot(full.x, full.y, full.z), dt = scheme.step;
+    const double g = parts_.settings.gravity_size(), dt = scheme.step;
     smoothing_.gravity_way = c.dynamic ? 0.5 * std::max(g, 1e-3) * dt * dt : 1e-4 * parts_.cell.spacing;
     const bool predicts = c.dynamic && !c.once();
     if (traction_.acts() || traction_.measures()) meet_columns(scheme, gravity);

@@ -32,7 +32,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
       : Base(device, scene, settings, state, needs(settings), {.columns = 0, .layers = 0}),
         controls_(with_materials(controls, scene.grid.layer_height)),
         step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed)),
-        length_(controls.step, controls.newton.iterations) {
+        length_(controls.step, controls.newton_iterations) {
     this->fit(0);
   }
 
@@ -94,12 +94,10 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
 
   /// The controls; the materials learn from them how round the cone's tip is (T15b).
   const ImplicitControls& with_materials(const ImplicitControls& c, double layer_height) {
-    const Vec3<double>& gravity = settings_.gravity.acceleration;
-    const double g = std::hypot(gravity.x, gravity.y, gravity.z);
-    for (Material<Real>& m : materials_.list) {
-      const double apex = c.apex * static_cast<double>(m.density) * g * layer_height;
-      prepare_for_newton(m, static_cast<Real>(apex));
-    }
+    constexpr double apex = 0.1;  // in weights of a cell
+    const double g = settings_.gravity_size();
+    for (Material<Real>& m : materials_.list)
+      prepare_for_newton(m, static_cast<Real>(apex * static_cast<double>(m.density) * g * layer_height));
     return c;
   }
   StepParts<Real, Device, Shape> parts() {
@@ -165,7 +163,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
         length_.accept(step, found.iterations, found.motion);
         return step;
       }
-      if (controls_.newton.gives_up()) return 0;
+      if (controls_.gives_up()) return 0;
       if (cut >= controls_.step_cuts) refuse_step(clock, step, stats, controls_.dynamic);
       step = length_.refuse(step, found.motion);
     }

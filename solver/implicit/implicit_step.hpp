@@ -58,7 +58,7 @@ class ImplicitStep {
     scatter_points(parts_.device, parts_.points.count(), parts_.grid.groups(),
                    ScatterInertia<Real, Shape>{{parts_.grid.view(), parts_.points.view()},
                                                parts_.materials,
-                                               parts_.settings.transfer.affine,
+                                               parts_.settings.affine(),
                                                c.dynamic,
                                                at.loads,
                                                nodes()});
@@ -74,7 +74,7 @@ class ImplicitStep {
 
   /// The method makes Newton's iterations, or the one linear solve; see NewtonReport.
   NewtonReport solve() {
-    return parts_.controls.once() ? solve_once(*this, parts_.controls.newton) : newton(*this, parts_.controls.newton);
+    return parts_.controls.once() ? solve_once(*this, parts_.controls) : newton(*this, parts_.controls);
   }
 
   // The verbs of NewtonProblem.
@@ -88,7 +88,7 @@ class ImplicitStep {
     const bool decide = contacts == Contacts::decided;
     if (decide) {
       contacts_.renew_limits();
-      const double each = parts_.controls.newton.tolerance / std::sqrt(static_cast<double>(std::max(nodes_.count, 1)));
+      const double each = parts_.controls.tolerance / std::sqrt(static_cast<double>(std::max(nodes_.count, 1)));
       sum_each<1>(parts_.device, nodes_.count, parts_.sums, SquareForces{nodes()},
                   FinishForces{balance_.data(), scheme_.stopping_share(), each});
     }
@@ -178,9 +178,8 @@ class ImplicitStep {
   }
   /// Gravity at a time [m/s2].
   Vec3<double> gravity_at(double time) const {
-    const GravitySettings& g = parts_.settings.gravity;
-    const double ramp = g.ramp > 0 ? std::min(1.0, time / g.ramp) : 1.0;
-    return {g.acceleration.x * ramp, g.acceleration.y * ramp, g.acceleration.z * ramp};
+    const double ramp = parts_.settings.gravity_ramp;
+    return parts_.settings.gravity_vector() * (ramp > 0 ? std::min(1.0, time / ramp) : 1.0);
   }
   NodeArrays nodes() { return nodes_.arrays(parts_.controls.dynamic); }
 
@@ -207,11 +206,11 @@ class ImplicitStep {
                                                  .acceleration = nodes_.acceleration_end.data()},
                                          .strain_displacement = nodes_.u.data(),
                                          .kept = kept,
-                                         .affine = parts_.settings.transfer.affine,
+                                         .affine = parts_.settings.affine(),
                                          .dilatant = parts_.dilatant,
                                          .part = {},
                                          .means = tangent_.stresses().means()};
-    if (dynamic && parts_.settings.transfer.remaps_velocity) {
+    if (dynamic && parts_.settings.remaps_velocity()) {
       remap_velocity(kernel);
     } else {
       tangent_.stresses().average(nodes_.u);

@@ -15,7 +15,7 @@ struct LinearForcing {
   double last_residual = 0, last = 0.1;
 
   /// The relative residual [-] to solve the next system to, where the unbalanced force over its size is `residual`.
-  double next(double residual, const NewtonControls& controls) {
+  double next(double residual, const ImplicitControls& controls) {
     constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
     if (controls.forcing == Forcing::fixed) return controls.linear_tolerance;
     double tolerance = first;

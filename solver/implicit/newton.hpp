@@ -102,14 +102,15 @@ class Progress {
 /// unbalanced force is no number, the linear system has no solution, no share of its change helps, points move too far,
 /// the unbalanced force stays, iterations run out, or the controls give up.
 template <NewtonProblem Problem>
-NewtonReport newton(Problem& problem, const NewtonControls& controls) {
+NewtonReport newton(Problem& problem, const ImplicitControls& controls) {
   NewtonReport report;
   FrictionSmoothing& smoothing = problem.smoothing();
   detail::Progress progress;
   LinearForcing forcing;
   Stall stall(controls.patience);
   problem.measure(Linearisation::consistent);
-  for (report.iterations = 0; report.iterations < controls.iterations && !controls.gives_up(); ++report.iterations) {
+  for (report.iterations = 0; report.iterations < controls.newton_iterations && !controls.gives_up();
+       ++report.iterations) {
     Unbalanced now = detail::settle_contacts(problem);
     const double size = now.size;
     report.residual = now.force / size;
@@ -142,7 +143,7 @@ NewtonReport newton(Problem& problem, const NewtonControls& controls) {
 
 /// This function makes one linear solve with the tangent at the start of the step, as the reference paper has it.
 template <NewtonProblem Problem>
-NewtonReport solve_once(Problem& problem, const NewtonControls& controls) {
+NewtonReport solve_once(Problem& problem, const ImplicitControls& controls) {
   NewtonReport report;
   problem.measure(Linearisation::consistent);
   problem.residual(Contacts::decided);

@@ -24,7 +24,7 @@ class ParticleStresses {
 
   /// Whether tangents are rounded to single precision.
   static bool rounds(const ImplicitControls& c) {
-    return std::is_same_v<Real, double> && !c.once() && c.linear.solver != LinearSolver::cholesky;
+    return std::is_same_v<Real, double> && !c.once() && c.linear_solver != LinearSolver::cholesky;
   }
 
   /// The method takes particles that have moved or have been sorted: elements and neighbours anew.
@@ -91,12 +91,13 @@ class ParticleStresses {
   /// The springs (T17a) on nodes with less than a tenth of a full one's mass, in statics.
   FillerSprings springs() const {
     if (parts_.controls.dynamic) return {};
+    constexpr double filler = 1e-3;  // of the stiffness of a full cell
     const double h = parts_.cell.spacing, hz = parts_.cell.layer_height;
     const Material<Real>& material = parts_.materials.list[0];
     const double full = static_cast<double>(material.density) * h * h * hz;
     return {.mass = mass_.data(),
             .light = 0.1 * full,
-            .stiffness = parts_.controls.filler * 2 * static_cast<double>(material.shear_modulus) * std::min(h, hz)};
+            .stiffness = filler * 2 * static_cast<double>(material.shear_modulus) * std::min(h, hz)};
   }
 
   const Parts& parts_;

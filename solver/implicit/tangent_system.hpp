@@ -60,9 +60,8 @@ class TangentSystem {
     if (direct()) return cholesky_.solve(stresses_.view(), held_nodes(), b, x);
     refresh();
     const ProfilePhase<Device> phase(parts_.device, "conjugate gradients");
-    const KrylovLimits limits{.tolerance = tolerance,
-                              .iterations = parts_.controls.linear.iterations,
-                              .give_up = parts_.controls.newton.give_up};
+    const KrylovLimits limits{
+        .tolerance = tolerance, .iterations = parts_.controls.linear_iterations, .give_up = parts_.controls.give_up};
     return cg_.solve(Product{*this}, preconditioner_, b, x, limits);
   }
 
@@ -98,7 +97,7 @@ class TangentSystem {
     }
   };
 
-  bool direct() const { return parts_.controls.linear.solver == LinearSolver::cholesky; }
+  bool direct() const { return parts_.controls.linear_solver == LinearSolver::cholesky; }
 
   void measure(bool with_tangent, bool definite) {
     const ProfilePhase<Device> phase(parts_.device, "stress and tangent");

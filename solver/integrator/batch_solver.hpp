@@ -143,7 +143,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
       scatter_points(
           device_, points_.count(), grid_.groups(),
           ParticleToGrid<Real, Shape, what, Laws>{grid_.view(), points_.view(), materials, clock_.data(), nodes_.data(),
-                                                  forces_.data(), loads_now_, settings_.transfer.affine, dilatant_});
+                                                  forces_.data(), loads_now_, settings_.affine(), dilatant_});
     };
     if constexpr (what == Scatter::momentum) {
       run(materials_);  // asks for no stress
@@ -172,12 +172,12 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
 
   /// The surroundings of the columns as the nodes' kernels see them.
   ColumnBoundary<Real> boundary() {
-    const Vec3<double>& full = settings_.gravity.acceleration;
+    const Vec3<double> full = settings_.gravity_vector();
     return {.grid = grid_.view(),
             .active = grid_.active_list(),
             .clock = clock_.data(),
             .gravity = {{static_cast<Real>(full.x), static_cast<Real>(full.y), static_cast<Real>(full.z)},
-                        settings_.gravity.ramp},
+                        settings_.gravity_ramp},
             .walls = walls_,
             .friction = columns_.seen_by(surroundings_.bed()),
             .full_base = static_cast<Real>(this->full_base()),
@@ -193,7 +193,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
  private:
   static ParticleNeeds needs(const IntegratorSettings& settings) {
     ParticleNeeds n = settings.needs;
-    n.remapped_velocity = settings.transfer.remaps_velocity;
+    n.remapped_velocity = settings.remaps_velocity();
     return n;
   }
 
@@ -228,7 +228,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   void step() {
     clear(true);
     move_nodes();
-    if (!settings_.transfer.remaps_velocity) return gather<Gather::all>();
+    if (!settings_.remaps_velocity()) return gather<Gather::all>();
     gather<Gather::motion>();
     clear(false);
     scatter<Scatter::momentum>();
@@ -263,7 +263,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
             .active = grid_.active_list(),
             .blocks = grid_.active_blocks(),
             .nodes = {nodes_.data(), changes},
-            .step = {clock_.data(), 0, {settings_.gravity.acceleration, settings_.gravity.ramp}}};
+            .step = {clock_.data(), 0, {settings_.gravity_vector(), settings_.gravity_ramp}}};
   }
 
   /// The method lets the nodes meet obstacles, and ground between the nodes (T12a). What is mapped back a second time
@@ -279,12 +279,12 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   template <Gather part>
   void gather() {
     const ProfilePhase<Device> phase(device_, "grid to points");
-    const Vec4<Real>* const changes = settings_.transfer.time > 0 ? forces_.data() : nullptr;
+    const Vec4<Real>* const changes = settings_.decay_time > 0 ? forces_.data() : nullptr;
     const auto run = [&]<bool budget, class Laws>(const Materials<Real, Laws>& materials) {
       for_each(device_, points_.count(),
                GridToParticle<Real, Shape, part, budget, Laws>{grid_.view(), points_.view(), materials, clock_.data(),
-                                                               nodes_.data(), changes, grid_.home(),
-                                                               settings_.transfer.affine, dilatant_, bound_by_layers_});
+                                                               nodes_.data(), changes, grid_.home(), settings_.affine(),
+                                                               dilatant_, bound_by_layers_});
     };
     if (settings_.energy_budget) {
       run.template operator()<true>(materials_);

@@ -17,7 +17,7 @@ class DeviceLoads {
  public:
   /// The constructor takes the loads with the volume of the particles that each pulls at [m3]; a scene whose list of
   /// volumes is empty has no loads.
-  DeviceLoads(const Device& device, std::vector<Load> loads, std::vector<double> volumes)
+  DeviceLoads(const Device& device, std::vector<LoadOptions> loads, std::vector<double> volumes)
       : loads_(std::move(loads)), volumes_(std::move(volumes)), densities_(device) {}
 
   /// The method uploads the force per volume of every load at a time in a step that began at `begin` [N/m3], for
@@ -31,7 +31,7 @@ class DeviceLoads {
   bool jump_at(double time) const { return loads_jump(loads_, volumes_, time); }
 
  private:
-  std::vector<Load> loads_;
+  std::vector<LoadOptions> loads_;
   std::vector<double> volumes_;  ///< [m3]
   Buffer<Vec3<double>, Device> densities_;
 };

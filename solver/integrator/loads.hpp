@@ -5,23 +5,17 @@
 
 #include <vector>
 
+#include "solver/options/loads.hpp"
 #include "solver/parallel/math.hpp"
 
 namespace talus::solver {
 
-/// A force on the particles that start inside a box.
-struct Load {
-  Vec3<double> force;       ///< on all of them together [N]
-  double ramp = 0;          ///< time over which it grows to its full size [s]
-  double from = 0, to = 0;  ///< it pulls from this time to that one [s]
-};
-
 /// The force per volume of every load at a time [N/m3], in a step that began at `begin` [s]: what begins or ends at the
 /// end of a step is none of that step's. `volumes`: of the particles that each pulls at [m3].
-std::vector<Vec3<double>> load_densities(const std::vector<Load>& loads, const std::vector<double>& volumes,
+std::vector<Vec3<double>> load_densities(const std::vector<LoadOptions>& loads, const std::vector<double>& volumes,
                                          double begin, double time);
 
 /// Whether a load that pulls at something jumps at a time.
-bool loads_jump(const std::vector<Load>& loads, const std::vector<double>& volumes, double time);
+bool loads_jump(const std::vector<LoadOptions>& loads, const std::vector<double>& volumes, double time);
 
 }  // namespace talus::solver

@@ -122,7 +122,7 @@ class PointSolver : public Solver {
   /// packing too.
   void start_measures() {
     measures_.start_energies(points_.count(),
-                             {grid_.view(), points_.view(), materials_, settings_.gravity.acceleration, dilatant_});
+                             {grid_.view(), points_.view(), materials_, settings_.gravity_vector(), dilatant_});
     if constexpr (Device::is_gpu) measures_.start_packing(points_.view(), grid_);
   }
 
@@ -151,7 +151,7 @@ class PointSolver : public Solver {
   /// The clock that a run goes on with from a state.
   static Clock clock_of(const SolverState& state, const IntegratorSettings& settings) {
     Clock clock = state.clock;
-    clock.subgrid.decay_time = settings.transfer.time;
+    clock.subgrid.decay_time = settings.decay_time;
     return clock;
   }
 

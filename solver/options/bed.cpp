@@ -114,9 +114,8 @@ std::string BaseOptions::sentence() const {
 template <class Real>
 BaseFriction<Real> make_base_friction(const SolveOptions& options) {
   const BaseOptions& o = options.base;
-  const BedSetting setting{.borne = 1 - o.pore_pressure_ratio,
-                           .density = options.material.density,
-                           .gravity = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2])};
+  const BedSetting setting{
+      .borne = 1 - o.pore_pressure_ratio, .density = options.material.density, .gravity = options.gravity_size()};
   BaseFriction<double> f;
   f.law = o.law;
   visit_law(o.law, [&](auto own) {

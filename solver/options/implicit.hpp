@@ -6,11 +6,16 @@
 #include <optional>
 
 #include "common/recipe/recipe.hpp"
-#include "solver/implicit/controls.hpp"
 
 namespace talus::solver {
 
 struct SolveOptions;
+
+/// How linear systems are solved: by conjugate gradients, or a factorisation.
+enum class LinearSolver { pcg, cholesky };
+/// How exactly linear systems are solved: always to the same tolerance, or as Newton's iterations get on (Eisenstat &
+/// Walker 1996).
+enum class Forcing { fixed, eisenstat_walker };
 
 /// The keys of [solve.implicit].
 struct ImplicitOptions {
@@ -18,14 +23,14 @@ struct ImplicitOptions {
   std::optional<double> newmark_alpha, newmark_beta;  ///< none: those of scheme_of()
   std::optional<double> newton_tolerance;  ///< unbalanced force over the forces' size; none: that of scheme_of()
   LinearSolver linear_solver = LinearSolver::pcg;
-  double linear_tolerance = 1e-8;
-  bool b_bar = false;  ///< element means of the volume change
+  double linear_tolerance = 1e-8;  ///< the finest relative residual that a linear system is solved to
+  bool b_bar = false;              ///< element means of the volume change (T17b)
 
-  // Fixed numbers without a key; with_preset() and tests take others.
-  int newton_iterations = 30;  ///< 1: the single linear solve of the reference paper
+  // Fixed numbers without a key; with_preset(), trials of a factor of safety and tests take others.
+  int newton_iterations = 30;  ///< at most; 1: the single linear solve of the reference paper
   Forcing forcing = Forcing::eisenstat_walker;
-  int linear_iterations = 5000;
-  int step_cuts = 8;  ///< halvings before giving up
+  int linear_iterations = 5000;  ///< of conjugate gradients, at most
+  int step_cuts = 8;             ///< halvings of a step before the run is given up
   /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
 

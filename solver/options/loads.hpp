@@ -3,20 +3,30 @@
 // Gravity, the velocity at the start, and forces on parts of the mass.
 #pragma once
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
+#include "solver/parallel/math.hpp"
 
 namespace talus::solver {
 
 /// The keys of [solve] for gravity and the velocity at the start.
 struct GravityOptions {
   std::vector<double> gravity = {0, 0, -9.81};       ///< [m/s2]
+  double gravity_ramp = 0;                           ///< time over which it grows to its full size [s]
   std::vector<double> initial_velocity = {0, 0, 0};  ///< [m/s]
+
+  Vec3<double> gravity_vector() const { return {gravity[0], gravity[1], gravity[2]}; }
+  double gravity_size() const { return std::hypot(gravity[0], gravity[1], gravity[2]); }
+  double initial_speed() const { return std::hypot(initial_velocity[0], initial_velocity[1], initial_velocity[2]); }
+
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v) {
     v.numbers("gravity_m_s2", gravity, recipe::any, "gravity: east, north, up");
     need_three(v, "gravity_m_s2", gravity);
+    v.number("gravity_ramp_s", gravity_ramp, recipe::not_negative, "time over which gravity grows to its full size");
     v.numbers("initial_velocity_m_s", initial_velocity, recipe::any,
               "velocity of the whole mass at the start: east, north, up");
     need_three(v, "initial_velocity_m_s", initial_velocity);

@@ -35,6 +35,11 @@ struct SchemeOptions {
   double damping = 0;  ///< Cundall's local factor
   double cfl = default_cfl;
   double largest_step = 1;  ///< [s]
+
+  /// Whether particles carry the affine part of their velocity.
+  bool affine() const { return transfer == Transfer::apic; }
+  /// Whether the particles' new velocity goes back to the grid before the strain.
+  bool remaps_velocity() const { return stress_update == StressUpdate::modified; }
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };

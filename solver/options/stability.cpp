@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/options/stability.hpp"
 
-#include <algorithm>
 #include <string>
 
 #include "solver/options/solve.hpp"
@@ -57,9 +56,8 @@ BeyondSearch beyond_search(const SolveOptions& o) {
   if (!has_strength(o))
     return {"no strength in the recipe", "elastic bodies on a bed that holds, or has no friction, have none to divide",
             "Take model = \"drucker-prager\" or law = \"coulomb\""};
-  if (!(std::ranges::any_of(o.gravity, [](double g) { return g != 0; })))
-    return {"gravity_m_s2 = [0, 0, 0]", "nothing pulls at the ground", "Give gravity"};
-  if (!std::ranges::all_of(o.initial_velocity, [](double v) { return v == 0; }))
+  if (!(o.gravity_size() > 0)) return {"gravity_m_s2 = [0, 0, 0]", "nothing pulls at the ground", "Give gravity"};
+  if (o.initial_speed() > 0)
     return {"initial_velocity_m_s", "a factor of safety is that of ground at rest", "Leave it out"};
   if (o.shaking.acts())
     return {"[solve.shaking]", "trials are equilibria, and a record that shakes the ground leaves none",

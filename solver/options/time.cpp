@@ -36,7 +36,6 @@ void TimeOptions::describe(recipe::Visitor& v) {
   v.needs(!accuracy || integrator == Integrator::automatic,
           {"[solve] accuracy has no effect", "it belongs to integrator = \"auto\"",
            "Leave it out, or take that integrator"});
-  v.number("gravity_ramp_s", gravity_ramp, recipe::not_negative, "time over which gravity grows to its full size");
   v.integer("gravity_loading_steps", gravity_loading_steps, recipe::Range{0, 100000},
             "quasi-static steps that bring the mass to equilibrium before the start; 0: start from zero stress");
   v.path("domain", domain, "domain of talus-preprocess; empty: domain.vdb in the output folder");

@@ -35,7 +35,6 @@ struct TimeOptions {
   Integrator integrator = Integrator::explicit_;
   std::optional<double> accuracy;           ///< "auto": share of the deposit that may lie elsewhere
   Integrator flow = Integrator::explicit_;  ///< "auto": steps of a flow; no key, settle_steps() chooses
-  double gravity_ramp = 0;                  ///< [s]
   int gravity_loading_steps = 0;            ///< quasi-static steps before the start
   std::filesystem::path domain;             ///< empty: OUT/domain.vdb
   double end_time = 60;                     ///< [s]

@@ -81,7 +81,7 @@ FrictionRange friction_range(const Plan& plan) {
   if (!std::all_of(domain.bed.begin(), domain.bed.end(), is_cohesion)) return {};  // the analyst's own knowledge
   const auto friction = make_base_friction<double>(o);
   if (friction.holds()) return {};
-  const double g = std::hypot(o.gravity[0], o.gravity[1], o.gravity[2]);
+  const double g = o.gravity_size();
   FrictionRange range{.least = std::numeric_limits<double>::infinity(),
                       .alone = !friction.has_traction() && domain.bed.empty()};
   // From next to nothing to a depth of half a kilometre, at rest and at speeds that halve: grains are held least by the
@@ -126,7 +126,7 @@ void advise_on_end(const Plan& plan) {
   const SolveOptions& o = plan.options;
   if (!abilities_of(o.integrator).carry_inertia || !o.loads.empty() || !o.walls.empty()) return;
   const double friction = plan.bound.line.friction, speed = plan.bound.fall;
-  const double g = std::hypot(o.gravity[0], o.gravity[1], o.gravity[2]);
+  const double g = o.gravity_size();
   if (!(friction > 0.02) || !(g > 0)) return;
   const double braking = speed / (g * friction);
   if (o.end_time >= braking) return;

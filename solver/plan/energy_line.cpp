@@ -71,7 +71,7 @@ EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options, con
       line.z = ground + thickness;
     }
   }
-  const double g = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
+  const double g = options.gravity_size();
   for (const InflowTop& top : inflow.tops) {
     const double head = g > 0 ? top.z + top.speed * top.speed / (2 * g) : top.z;
     if (head > line.z) line = {.x = top.x, .y = top.y, .z = head, .friction = line.friction};
@@ -81,8 +81,8 @@ EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options, con
 
 SpeedBound speed_bound(const Domain& domain, const SolveOptions& o, const Scene& scene) {
   SpeedBound bound{.line = energy_line_of(domain, o, scene.inflow)};
-  const double g = std::hypot(o.gravity[0], o.gravity[1], o.gravity[2]);
-  const double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
+  const double g = o.gravity_size();
+  const double start = o.initial_speed();
   bound.fall = std::sqrt(2 * g * bound.line.largest_head(domain.terrain));
   bound.speed = bound.fall + start + scene.shaking.velocity_range();
   return bound;

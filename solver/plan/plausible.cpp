@@ -46,7 +46,7 @@ struct ColumnLoad {
 
 void judge_weight(const Scene& scene, const SolveOptions& o) {
   const auto materials = materials_of(o);
-  const double g = std::hypot(o.gravity[0], o.gravity[1], o.gravity[2]);
+  const double g = o.gravity_size();
   const double area = scene.grid.spacing * scene.grid.spacing;
   const ParticleState& s = scene.points;
   const auto material_of = [&](std::size_t p) { return materials[static_cast<std::size_t>(s.material[p])]; };

@@ -58,7 +58,7 @@ double speed_of_fall(const RunEnd& end) {
   double top = -1e300, low = 1e300;
   for (const auto& [x, y, z] : positions(end.scene, end.scene.points)) top = std::max(top, height(x, y, z));
   const ParticleState& entering = end.scene.inflow.points;
-  double start = std::hypot(o.initial_velocity[0], o.initial_velocity[1], o.initial_velocity[2]);
+  double start = o.initial_speed();
   for (const auto& [x, y, z] : positions(end.scene, entering)) top = std::max(top, height(x, y, z));
   for (std::size_t p = 0; p < entering.size(); ++p)
     start = std::max(start, std::hypot(entering.velocity[0][p], entering.velocity[1][p], entering.velocity[2][p]));

@@ -71,7 +71,7 @@ Entrance entrance_of(const Domain& domain, const SolveOptions& options, std::siz
   const std::string place = fmt::format("[[solve.inflow]] name = \"{}\"", inflow_name(o, number));
   Hydrograph hydrograph = read_hydrograph(o, place);
   InflowLine line = inflow_line(o, place, domain.grid, terrain);
-  line.ground.gravity = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
+  line.ground.gravity = options.gravity_size();
   InflowSection section(line.ground, o);
   InflowSummary summary = largest_flow(o, place, hydrograph, section);
   summary.name = inflow_name(o, number);
@@ -125,7 +125,7 @@ Inflow make_one(const Domain& domain, const SolveOptions& options, std::size_t n
                             {.release = static_cast<int>(domain.release_names.size() + number),
                              .material = material_called(options, e.summary.name),
                              .density = options.material_of(e.summary.name).density,
-                             .gravity = {options.gravity[0], options.gravity[1], options.gravity[2]},
+                             .gravity = options.gravity_vector(),
                              .points_per_cell = {o.points_per_cell[0], o.points_per_cell[1], o.points_per_cell[2]}});
   Inflow inflow;
   for (const PulseTimes& pulse : times) seeder.add(pulse, e.place, inflow);

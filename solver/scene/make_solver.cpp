@@ -24,13 +24,13 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings, 
   state.points = std::move(points);
   const auto cells = scene.map.count();
   for_each_running_map([&](const RunningMap& map, auto& values) { values.assign(cells, map.start); }, state.maps);
-  const StepSettings& steps = settings.steps;
-  state.clock.control.courant = steps.cfl;
-  state.clock.control.longest = steps.largest;
+  state.clock.control.courant = settings.cfl;
+  state.clock.control.longest = settings.largest_step;
   state.clock.motion_maps.column_spacing = scene.grid.spacing;
   state.clock.budget.is_kept = settings.energy_budget ? 1 : 0;
-  const auto rate = static_cast<float>(first_rate(scene.grid, scene.terrain, state.points,
-                                                  {steps.fastest_wave, !(steps.kappa > 0)}, steps.initial_speed));
+  const auto rate =
+      static_cast<float>(first_rate(scene.grid, scene.terrain, state.points,
+                                    {settings.fastest_wave, !(settings.kappa > 0)}, settings.initial_speed()));
   atomic_max_positive(&state.clock.control.rate_bits, rate);
   return state;
 }
@@ -53,7 +53,7 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& 
       return make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
     });
   };
-  return settings.precision == Precision::single_ ? of(float{}) : of(double{});
+  return settings.common.precision == Precision::single_ ? of(float{}) : of(double{});
 }
 
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device,

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "solver/scene/implicit_controls.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus::solver {
 namespace {
@@ -19,12 +19,8 @@ constexpr double transfer_falls = 0.3, transfer_waves = 10;
 /// The coefficient of friction of an angle in degrees.
 double coefficient(double degrees) { return std::tan(degrees * (std::numbers::pi / 180)); }
 
-Vec3<double> vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-
-double size(const std::vector<double>& v) { return std::hypot(v[0], v[1], v[2]); }
-
 ParticleNeeds needs_of(const SolveOptions& o) {
-  return {.affine_transfer = o.transfer == Transfer::apic,
+  return {.affine_transfer = o.affine(),
           .plastic_volume = o.any_material([](const MaterialOptions& m) { return m.dilates(); }),
           .boxes = o.shape == ShapeKind::gimp,
           .loads = !o.loads.empty(),
@@ -42,38 +38,28 @@ PlaneWall make_wall(const WallOptions& o) {
           .to = o.to};
 }
 
-Load make_load(const LoadOptions& o) { return {.force = vector(o.force), .ramp = o.ramp, .from = o.from, .to = o.to}; }
-
 SeparationSettings make_separation(const SolveOptions& o, const GridShape& grid) {
   return {.kind = o.base.separation, .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
 }
 
 IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
-  IntegratorSettings s{.shape = o.shape,
-                       .needs = needs_of(o),
-                       .steps = {.cfl = o.cfl,
-                                 .largest = o.largest_step,
-                                 .fastest_wave = fastest_wave(o),
-                                 .initial_speed = size(o.initial_velocity),
-                                 .kappa = abilities_of(o.flow_integrator()).solve_columns ? column_kappa : 0},
-                       .transfer = {.affine = o.transfer == Transfer::apic,
-                                    .remaps_velocity = o.stress_update == StressUpdate::modified,
-                                    .time = transfer_time_of(o, grid)},
-                       .gravity = {.acceleration = vector(o.gravity), .ramp = o.gravity_ramp},
-                       .damping = o.damping,
-                       .map_threshold = o.map_threshold,
-                       .energy_budget = o.energy_budget,
-                       .deterministic = o.deterministic,
-                       .materials = {.in_double = make_materials<double>(o, grid.spacing, grid.layer_height),
-                                     .in_single = make_materials<float>(o, grid.spacing, grid.layer_height),
-                                     .densities_differ = o.densities_differ()},
-                       .bed = make_base_friction<double>(o),
-                       .separation = make_separation(o, grid),
-                       .walls = {},
-                       .loads = {}};
+  IntegratorSettings s{o, o, o};
+  s.needs = needs_of(o);
+  s.fastest_wave = fastest_wave(o);
+  s.kappa = abilities_of(o.flow_integrator()).solve_columns ? column_kappa : 0;
+  s.decay_time = transfer_time_of(o, grid);
+  s.materials = {.in_double = make_materials<double>(o, grid.spacing, grid.layer_height),
+                 .in_single = make_materials<float>(o, grid.spacing, grid.layer_height),
+                 .densities_differ = o.densities_differ()};
+  s.bed = make_base_friction<double>(o);
+  s.separation = make_separation(o, grid);
   std::transform(o.walls.begin(), o.walls.end(), std::back_inserter(s.walls), make_wall);
-  std::transform(o.loads.begin(), o.loads.end(), std::back_inserter(s.loads), make_load);
+  s.loads = o.loads;
   return s;
+}
+
+ImplicitControls make_implicit(const SolveOptions& o) {
+  return {o.implicit, scheme_of(o), abilities_of(o.integrator).carry_inertia, interrupted};
 }
 
 /// This function lets materials follow the laws that take their part while gravity is loaded, and do not yield.
@@ -86,24 +72,23 @@ void hold(Materials<Real>& materials) {
 
 double transfer_time_of(const SolveOptions& o, const GridShape& grid) {
   if (o.transfer_time) return *o.transfer_time;
-  const double g = size(o.gravity);
+  const double g = o.gravity_size();
   return g > 0 ? transfer_falls * std::sqrt(grid.layer_height / g)
                : transfer_waves * grid.layer_height / fastest_wave(o);
 }
 
 SolverSettings make_settings(const SolveOptions& options, const GridShape& grid) {
-  return {.precision = options.precision,
-          .integrator = options.flow_integrator(),
+  return {.integrator = options.flow_integrator(),
           .common = make_common(options, grid),
-          .implicit = make_implicit_controls(options)};
+          .implicit = make_implicit(options)};
 }
 
 SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.integrator = Integrator::quasi_static;
   s.implicit.dynamic = false;
   s.implicit.step = 1.0 / steps;
-  s.implicit.newton.iterations = std::max(s.implicit.newton.iterations, 20);
-  s.common.gravity.ramp = 1;
+  s.implicit.newton_iterations = std::max(s.implicit.newton_iterations, 20);
+  s.common.gravity_ramp = 1;
   hold(s.common.materials.in_double);
   hold(s.common.materials.in_single);
   s.common.needs.plastic_volume = s.common.needs.softening = false;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the options of a recipe to settings: the one place where degrees become coefficients, keys become SI units and
-// words become laws and numbers that kernels see.
+// From the options of a recipe to settings: the one place where degrees become coefficients, and words become laws and
+// numbers that kernels see.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,6 @@ namespace talus::solver {
 
 /// The settings that a solver is made of, beside its scene and state.
 struct SolverSettings {
-  Precision precision = Precision::double_;
   Integrator integrator = Integrator::explicit_;  ///< never automatic
   IntegratorSettings common;
   ImplicitControls implicit;  ///< looked at by implicit integrators

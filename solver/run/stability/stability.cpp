@@ -119,7 +119,7 @@ Stability StabilitySearch::run() {
 std::optional<SolverState> StabilitySearch::rest(double factor, const SolverState* from, StabilityTrial& trial) const {
   const Scene scene = weakened_scene(factor);
   SolverSettings settings = static_settings(options_, scene_, factor);
-  if (from) settings.common.gravity.ramp = 0;
+  if (from) settings.common.gravity_ramp = 0;
   const auto solver = from ? resume_solver(scene, settings, device_, *from) : make_solver(scene, settings, device_);
   try {
     const StepStats effort = advance_to(*solver, solver->clock().time + 1);
@@ -173,7 +173,7 @@ void StabilitySearch::look_again(StabilityTrial& trial) {
 /// The mass let go from the last equilibrium, with its strength divided by `factor`.
 Failure StabilitySearch::fail(double factor) {
   const GridShape& grid = scene_.grid;
-  const double gravity = std::hypot(options_.gravity[0], options_.gravity[1], options_.gravity[2]);
+  const double gravity = options_.gravity_size();
   const double cell = std::min(grid.spacing, grid.layer_height);
   Failure failure{.factor = factor, .time = std::sqrt(2 * fall * cell / ((overload - 1) * gravity))};
   const double begun = held_.clock.time;

@@ -24,15 +24,15 @@ constexpr int narrow_section = 128;
 
 SolverSettings static_settings(const SolveOptions& options, const Scene& scene, double factor) {
   SolverSettings s = make_settings(weakened(options, factor), scene.grid);
-  s.precision = Precision::double_;
+  s.common.precision = Precision::double_;
   s.integrator = Integrator::quasi_static;
-  s.common.gravity.ramp = 1;
+  s.common.gravity_ramp = 1;
   s.common.bed = weakened(s.common.bed, factor);
   s.common.separation = {};
   s.common.damping = 0;
   for (PlaneWall& wall : s.common.walls) wall.to = 1e30;
-  std::erase_if(s.common.loads, [](const Load& load) { return load.from > 0; });
-  for (Load& load : s.common.loads) {
+  std::erase_if(s.common.loads, [](const LoadOptions& load) { return load.from > 0; });
+  for (LoadOptions& load : s.common.loads) {
     load.ramp = 1;
     load.to = 1e30;
   }
@@ -40,11 +40,11 @@ SolverSettings static_settings(const SolveOptions& options, const Scene& scene, 
   s.implicit.step = 1;
   s.implicit.step_cuts = 0;
   s.implicit.b_bar = true;
-  s.implicit.newton.iterations = std::max(s.implicit.newton.iterations, most_iterations);
-  s.implicit.newton.tolerance = balanced;
-  s.implicit.newton.patience = patience_at_rest;
-  if (s.implicit.linear.solver == LinearSolver::pcg && options.obstacles.empty() && narrow(scene.points))
-    s.implicit.linear.solver = LinearSolver::cholesky;
+  s.implicit.newton_iterations = std::max(s.implicit.newton_iterations, most_iterations);
+  s.implicit.tolerance = balanced;
+  s.implicit.patience = patience_at_rest;
+  if (s.implicit.linear_solver == LinearSolver::pcg && options.obstacles.empty() && narrow(scene.points))
+    s.implicit.linear_solver = LinearSolver::cholesky;
   return s;
 }
 
@@ -56,8 +56,8 @@ SolverSettings falling_settings(const SolveOptions& options, const Scene& scene,
   s.implicit.beta = 1;
   s.implicit.step = step;
   s.implicit.step_cuts = 8;
-  s.implicit.newton.patience = patience_in_motion;
-  s.common.gravity.ramp = 0;
+  s.implicit.patience = patience_in_motion;
+  s.common.gravity_ramp = 0;
   return s;
 }
 

@@ -34,7 +34,7 @@ void weaken(Bed<double>& bed, FrictionLaw law, double factor) {
 double stiffening_of(const Domain& domain, const SolveOptions& options) {
   const auto& heights = domain.points.height;
   const double depth = heights.empty() ? 0 : *std::max_element(heights.begin(), heights.end());
-  const double gravity = std::hypot(options.gravity[0], options.gravity[1], options.gravity[2]);
+  const double gravity = options.gravity_size();
   double strain = 0;
   options.any_material([&](const MaterialOptions& m) {
     const double speed = make_material<double>(m).wave_speed;

@@ -52,7 +52,7 @@ class GivenUp {
       : options_(options_of(integrator)),
         scene_(PartsBench::make(options_)),
         settings_(make_settings(options_, scene_.grid)) {
-    settings_.implicit.newton.give_up = [] { return gives_up; };
+    settings_.implicit.give_up = [] { return gives_up; };
   }
   std::unique_ptr<Tested> begin_at(const SolverState& state) const {
     auto solver = std::make_unique<Tested>(CpuDevice::make(), scene_, settings_.common, settings_.implicit, state);

@@ -8,8 +8,16 @@
 namespace talus::solver::testing {
 namespace {
 
+ImplicitControls controls(double tolerance, Forcing forcing) {
+  ImplicitControls c;
+  c.tolerance = tolerance;
+  c.forcing = forcing;
+  c.linear_tolerance = 1e-8;
+  return c;
+}
+
 TEST(LinearForcing, asks_for_as_much_as_the_last_iteration_brought) {
-  const NewtonControls c{.tolerance = 1e-6, .forcing = Forcing::eisenstat_walker, .linear_tolerance = 1e-8};
+  const ImplicitControls c = controls(1e-6, Forcing::eisenstat_walker);
   LinearForcing forcing;
   EXPECT_EQ(forcing.next(1, c), 1e-3);
   EXPECT_DOUBLE_EQ(forcing.next(0.1, c), 0.9 * 0.01);
@@ -18,13 +26,13 @@ TEST(LinearForcing, asks_for_as_much_as_the_last_iteration_brought) {
 }
 
 TEST(LinearForcing, keeps_to_one_tolerance_where_that_is_asked_for) {
-  const NewtonControls c{.tolerance = 1e-6, .forcing = Forcing::fixed, .linear_tolerance = 1e-8};
+  const ImplicitControls c = controls(1e-6, Forcing::fixed);
   LinearForcing forcing;
   for (const double residual : {1.0, 0.5, 1e-5}) EXPECT_EQ(forcing.next(residual, c), 1e-8);
 }
 
 TEST(LinearForcing, asks_for_no_more_than_the_finest_tolerance) {
-  const NewtonControls c{.tolerance = 1e-12, .forcing = Forcing::eisenstat_walker, .linear_tolerance = 1e-8};
+  const ImplicitControls c = controls(1e-12, Forcing::eisenstat_walker);
   LinearForcing forcing;
   forcing.next(1, c);
   EXPECT_EQ(forcing.next(1e-5, c), 1e-8);

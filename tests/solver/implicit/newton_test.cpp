@@ -14,8 +14,12 @@
 namespace talus::solver::testing {
 namespace {
 
-NewtonControls controls(double tolerance = 1e-12) {
-  return {.iterations = 30, .tolerance = tolerance, .forcing = Forcing::fixed, .linear_tolerance = 1e-12};
+ImplicitControls controls(double tolerance = 1e-12) {
+  ImplicitControls c;
+  c.tolerance = tolerance;
+  c.forcing = Forcing::fixed;
+  c.linear_tolerance = 1e-12;
+  return c;
 }
 
 TEST(Newton, converges_quadratically_on_a_smooth_problem) {
@@ -123,8 +127,8 @@ TEST(Newton, refuses_a_step_that_moves_too_far) {
 TEST(Newton, ends_when_iterations_run_out) {
   ToyProblem p = scalar_problem(
       0, [](double u) { return 3 - u - u * u * u; }, [](double u) { return 1 + 3 * u * u; });
-  NewtonControls few = controls();
-  few.iterations = 2;
+  ImplicitControls few = controls();
+  few.newton_iterations = 2;
   const NewtonReport report = newton(p, few);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 2);
@@ -138,8 +142,8 @@ TEST(Newton, gives_up_a_body_that_moves_on_without_an_equilibrium) {
         0, [by](double u) { return by - u / (1 + u); }, [](double) { return 1.0; });
   };
   ToyProblem falls = pulled(1.1), rests = pulled(0.6);
-  NewtonControls patient = controls(1e-4);
-  patient.iterations = 80;
+  ImplicitControls patient = controls(1e-4);
+  patient.newton_iterations = 80;
   const NewtonReport all = newton(falls, patient);
   EXPECT_FALSE(all.converged);
   EXPECT_EQ(all.iterations, 80);
@@ -242,7 +246,7 @@ TEST(Newton, gives_up_between_iterations_where_it_is_told_to) {
       1, [](double u) { return 3 - u - u * u * u; }, [](double u) { return 1 + 3 * u * u; });
   static int asked;  // what is asked holds no state of its own
   asked = 0;
-  NewtonControls c = controls();
+  ImplicitControls c = controls();
   c.give_up = [] { return ++asked > 4; };  // before each iteration, and before each share of a change
   const NewtonReport report = newton(p, c);
   EXPECT_FALSE(report.converged);

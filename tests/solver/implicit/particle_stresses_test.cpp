@@ -52,10 +52,10 @@ TEST(ParticleStresses, balance_one_another_under_any_strain) {
 TEST(ParticleStresses, round_tangents_only_where_newton_corrects_them) {
   ImplicitControls c;
   EXPECT_TRUE(Stresses::rounds(c));
-  c.newton.iterations = 1;
+  c.newton_iterations = 1;
   EXPECT_FALSE(Stresses::rounds(c));
-  c.newton.iterations = 30;
-  c.linear.solver = LinearSolver::cholesky;
+  c.newton_iterations = 30;
+  c.linear_solver = LinearSolver::cholesky;
   EXPECT_FALSE(Stresses::rounds(c));
 }
 

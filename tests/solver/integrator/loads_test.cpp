@@ -10,8 +10,8 @@ namespace talus::solver {
 namespace {
 
 TEST(Loads, grow_over_their_ramp_and_end) {
-  const std::vector<Load> loads{{.force = {8, -4, 2}, .ramp = 4, .from = 1, .to = 10},
-                                {.force = {0, 0, 6}, .ramp = 0, .from = 0, .to = 2}};
+  const std::vector<LoadOptions> loads{{.force = {8, -4, 2}, .ramp = 4, .from = 1, .to = 10},
+                                       {.force = {0, 0, 6}, .ramp = 0, .from = 0, .to = 2}};
   const std::vector<double> volumes{2, 3};
   const auto at = [&](double time) { return load_densities(loads, volumes, time, time); };
   EXPECT_EQ(at(0)[0].x, 0);
@@ -25,8 +25,8 @@ TEST(Loads, grow_over_their_ramp_and_end) {
 }
 
 TEST(Loads, that_begin_or_end_with_a_step_are_none_of_that_step_and_jump) {
-  const std::vector<Load> loads{{.force = {6, 0, 0}, .ramp = 0, .from = 1, .to = 2},
-                                {.force = {6, 0, 0}, .ramp = 4, .from = 3, .to = 9}};
+  const std::vector<LoadOptions> loads{{.force = {6, 0, 0}, .ramp = 0, .from = 1, .to = 2},
+                                       {.force = {6, 0, 0}, .ramp = 4, .from = 3, .to = 9}};
   const std::vector<double> volumes{3, 2};
   EXPECT_EQ(load_densities(loads, volumes, 0.5, 1)[0].x, 0);
   EXPECT_EQ(load_densities(loads, volumes, 1, 1.5)[0].x, 2);

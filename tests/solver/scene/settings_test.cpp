@@ -8,8 +8,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/stage/stage.hpp"
 #include "solver/boundary/contact_points.hpp"
+#include "solver/implicit/controls.hpp"
 #include "solver/integrator/settings.hpp"
+#include "solver/options/implicit.hpp"
+#include "solver/options/loads.hpp"
 #include "solver/options/material.hpp"
 #include "solver/options/obstacles.hpp"
 #include "solver/options/scheme.hpp"
@@ -76,20 +80,20 @@ TEST(Settings, steps_transfer_and_gravity_are_those_of_the_recipe) {
   o.gravity_ramp = 3;
   o.initial_velocity = {3, 4, 12};
   const IntegratorSettings s = make_settings(o, grid).common;
-  EXPECT_EQ(s.steps.cfl, 0.3);
-  EXPECT_EQ(s.steps.largest, 0.2);
-  EXPECT_EQ(s.steps.initial_speed, 13);
-  EXPECT_EQ(s.steps.fastest_wave, fastest_wave(o));
-  EXPECT_FALSE(s.transfer.affine);
-  EXPECT_TRUE(s.transfer.remaps_velocity);
-  EXPECT_EQ(s.transfer.time, 7);
-  EXPECT_EQ(s.gravity.acceleration.y, 2);
-  EXPECT_EQ(s.gravity.ramp, 3);
+  EXPECT_EQ(s.cfl, 0.3);
+  EXPECT_EQ(s.largest_step, 0.2);
+  EXPECT_EQ(s.initial_speed(), 13);
+  EXPECT_EQ(s.fastest_wave, fastest_wave(o));
+  EXPECT_FALSE(s.affine());
+  EXPECT_TRUE(s.remaps_velocity());
+  EXPECT_EQ(s.decay_time, 7);
+  EXPECT_EQ(s.gravity_vector().y, 2);
+  EXPECT_EQ(s.gravity_ramp, 3);
 }
 
 TEST(Settings, velocity_finer_than_the_grid_decays_as_fast_as_layers_fall) {
   SolveOptions o;
-  const auto time = [&] { return make_settings(o, grid).common.transfer.time; };
+  const auto time = [&] { return make_settings(o, grid).common.decay_time; };
   const double of_layer = std::sqrt(grid.layer_height / 9.81);
   EXPECT_NEAR(time(), 0.3 * of_layer, 1e-12);
   o.material.youngs_modulus *= 100;
@@ -151,8 +155,8 @@ TEST(Settings, gravity_loading_holds_what_yields_and_keeps_the_walls_of_the_star
   EXPECT_EQ(s.integrator, Integrator::quasi_static);
   EXPECT_FALSE(s.implicit.dynamic);
   EXPECT_EQ(s.implicit.step, 0.125);
-  EXPECT_EQ(s.implicit.newton.iterations, 20);
-  EXPECT_EQ(s.common.gravity.ramp, 1);
+  EXPECT_EQ(s.implicit.newton_iterations, 20);
+  EXPECT_EQ(s.common.gravity_ramp, 1);
   EXPECT_EQ(s.common.materials.in_double.list[0].model, MaterialModel::hencky);
   EXPECT_EQ(s.common.materials.in_single.list[0].model, MaterialModel::hencky);
   EXPECT_FALSE(s.common.needs.plastic_volume);
@@ -160,6 +164,65 @@ TEST(Settings, gravity_loading_holds_what_yields_and_keeps_the_walls_of_the_star
   EXPECT_FALSE(s.common.bed.has_traction());
   ASSERT_EQ(s.common.walls.size(), 1U);
   EXPECT_EQ(s.common.walls[0].to, 2) << "they stand throughout";
+}
+
+TEST(ImplicitControls, are_those_of_the_recipe) {
+  SolveOptions o;
+  o.integrator = Integrator::newmark;
+  o.implicit = {.step = 0.03,
+                .newmark_alpha = 0.5,
+                .newmark_beta = 1,
+                .newton_tolerance = 1e-4,
+                .linear_solver = LinearSolver::cholesky,
+                .linear_tolerance = 1e-5,
+                .b_bar = true,
+                .newton_iterations = 7,
+                .forcing = Forcing::fixed,
+                .linear_iterations = 77,
+                .step_cuts = 3};
+  const ImplicitControls c = make_settings(o, grid).implicit;
+  EXPECT_TRUE(c.dynamic);
+  EXPECT_EQ(c.step, 0.03);
+  EXPECT_EQ(c.step_cuts, 3);
+  EXPECT_EQ(c.alpha, 0.5);
+  EXPECT_EQ(c.beta, 1);
+  EXPECT_EQ(c.newton_iterations, 7);
+  EXPECT_EQ(c.tolerance, 1e-4);
+  EXPECT_EQ(c.forcing, Forcing::fixed);
+  EXPECT_EQ(c.linear_tolerance, 1e-5);
+  EXPECT_EQ(c.linear_solver, LinearSolver::cholesky);
+  EXPECT_EQ(c.linear_iterations, 77);
+  EXPECT_TRUE(c.b_bar);
+  EXPECT_EQ(c.give_up, interrupted) << "a step ends where a signal asks for the end";
+}
+
+TEST(ImplicitControls, are_static_and_one_linear_solve_where_the_recipe_says_so) {
+  SolveOptions o;
+  o.integrator = Integrator::quasi_static;
+  EXPECT_FALSE(make_settings(o, grid).implicit.dynamic);
+  EXPECT_FALSE(make_settings(o, grid).implicit.once());
+  o.implicit.newton_iterations = 1;
+  EXPECT_TRUE(make_settings(o, grid).implicit.once());
+}
+
+TEST(ImplicitControls, of_what_flows_are_damped_and_loose_where_the_recipe_leaves_them_open) {
+  SolveOptions o;
+  o.integrator = Integrator::newmark;
+  const ImplicitControls flow = make_settings(o, grid).implicit;
+  EXPECT_EQ(flow.alpha, 0.5);
+  EXPECT_EQ(flow.beta, 1);
+  EXPECT_EQ(flow.tolerance, 1e-2);
+  const auto is_exact = [](const SolveOptions& options) {
+    const ImplicitControls c = make_settings(options, grid).implicit;
+    return c.alpha == 0.25 && c.beta == 0.5 && c.tolerance == 1e-6;
+  };
+  o.integrator = Integrator::quasi_static;
+  EXPECT_TRUE(is_exact(o)) << "statics";
+  o.integrator = Integrator::automatic;
+  EXPECT_TRUE(is_exact(o)) << "at rest";
+  o.integrator = Integrator::newmark;
+  o.material.model = MaterialModel::hencky;
+  EXPECT_TRUE(is_exact(o)) << "an elastic body";
 }
 
 }  // namespace
