@@ -59,6 +59,17 @@ class Reader : public Visitor {
       return read_integer(node, name, item, range);
     });
   }
+  void pairs(std::string_view key, Pairs& value, Range range, std::string_view) override {
+    read_list(key, value, [&](const toml::node& node, const std::string& name, std::array<double, 2>& row) {
+      const auto* pair = node.as_array();
+      if (pair == nullptr || pair->size() != 2) {
+        walk_.add(node, name, "a row of two numbers is wanted", fmt::format("Write {} = [[a, b], ...]", key));
+        return false;
+      }
+      return read_number(*pair->get(0), name + "[0]", row[0], range, true) &&
+             read_number(*pair->get(1), name + "[1]", row[1], range, true);
+    });
+  }
   void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view) override;
   void names(std::string_view key, std::vector<std::string>& value, const std::vector<std::string_view>& allowed,
              std::string_view) override {

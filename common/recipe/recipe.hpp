@@ -4,6 +4,7 @@
 // describe(Visitor&) names every key once; the reader, the template and the used recipe are visitors of it.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
@@ -34,6 +35,9 @@ inline constexpr Range positive{0.0, infinity, true, false};
 inline constexpr Range not_negative{0.0, infinity};
 inline constexpr Range fraction{0.0, 1.0};
 
+/// Rows of two numbers, [[a, b], ...].
+using Pairs = std::vector<std::array<double, 2>>;
+
 /// Walks the keys of a stage's options. A default is the value the member holds before the visit.
 /// Keys carry their unit (density_kg_m3). `help` is one line, shown in the template as a comment.
 class Visitor {
@@ -56,6 +60,8 @@ class Visitor {
   /// One of `names`; index is its place in the list.
   virtual void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names,
                       std::string_view help) = 0;
+  /// Rows of two numbers; only readers and writers look.
+  virtual void pairs(std::string_view /*key*/, Pairs& /*value*/, Range /*range*/, std::string_view /*help*/) {}
   /// A list of names out of `allowed`, or any where that is empty; only readers and writers look.
   virtual void names(std::string_view /*key*/, std::vector<std::string>& /*value*/,
                      const std::vector<std::string_view>& /*allowed*/, std::string_view /*help*/) {}

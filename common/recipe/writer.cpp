@@ -69,6 +69,11 @@ class Writer : public Visitor {
     for (const double item : value) words.push_back(toml_number(item));
     line(key, fmt::format("[{}]", fmt::join(words, ", ")), help, range_text(range));
   }
+  void pairs(std::string_view key, Pairs& value, Range range, std::string_view help) override {
+    std::vector<std::string> rows;
+    for (const auto& [a, b] : value) rows.push_back(fmt::format("[{}, {}]", toml_number(a), toml_number(b)));
+    line(key, fmt::format("[{}]", fmt::join(rows, ", ")), help, range_text(range));
+  }
   void integers(std::string_view key, std::vector<int>& value, Range range, std::string_view help) override {
     line(key, fmt::format("[{}]", fmt::join(value, ", ")), help, range_text(range));
   }

@@ -98,8 +98,7 @@ SolveOptions options_for(const KernelSetting& k) {
   if (k.newmark) {
     o.integrator = Integrator::newmark;
     o.implicit.step = 0.05;  // about 5 CFL steps
-    o.implicit.newmark_alpha = 0.5;
-    o.implicit.newmark_beta = 1;
+    o.implicit.newmark = {0.5, 1};
     o.implicit.newton_tolerance = 1e-4;
     o.implicit.linear_tolerance = 1e-3;
   }

@@ -81,7 +81,7 @@ def single(method):
 
 def newton(steps, tolerance=1e-3):
     """Backward Euler with Newton's iterations to a tolerance; `steps` CFL steps long."""
-    implicit = {"newmark_alpha": 0.5, "newmark_beta": 1.0, "newton_tolerance": tolerance, "step_cfl": steps}
+    implicit = {"newmark": [0.5, 1.0], "newton_tolerance": tolerance, "step_cfl": steps}
     return Method("newton", f"{steps:g}", {"solve": {"integrator": "newmark", "implicit": implicit}})
 
 

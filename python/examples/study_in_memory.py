@@ -25,8 +25,7 @@ def main(path, *coefficients):
     print("coefficient  reach_m  steps")
     for at_rest in map(float, coefficients):
         recipe["solve.base.law"] = "table"
-        recipe["solve.base.table_speed_m_s"] = speeds
-        recipe["solve.base.table_coefficient"] = at_rest * (1 - 0.5 * speeds / speeds[-1])
+        recipe["solve.base.table"] = numpy.column_stack([speeds, at_rest * (1 - 0.5 * speeds / speeds[-1])])
         result = talus.run(talus.plan(recipe, site), on="cpu")
         print(f"{at_rest:11.2f}  {reach(result):7.0f}  {result.summary['steps']:5d}")
 

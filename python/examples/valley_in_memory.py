@@ -11,8 +11,7 @@ from matplotlib import pyplot
 
 recipe = talus.Recipe.read(sys.argv[1])
 recipe["solve.base.law"] = "table"
-recipe["solve.base.table_speed_m_s"] = [0, 2, 10, 30]
-recipe["solve.base.table_coefficient"] = [0.4, 0.35, 0.25, 0.2]
+recipe["solve.base.table"] = [[0, 0.4], [2, 0.35], [10, 0.25], [30, 0.2]]  # slip speed [m/s], friction
 result = talus.run(talus.plan(recipe), callback=lambda now: print(f"{now.time:.1f} s: {now.thickness.max():.2f} m"))
 pyplot.imshow(result.maps["deposit_thickness"], origin="lower", vmin=0.1)
 pyplot.colorbar(label="thickness of the deposit [m]")

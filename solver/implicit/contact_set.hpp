@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "solver/implicit/contact_forces.hpp"
 #include "solver/implicit/friction_smoothing.hpp"

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "solver/implicit/controls.hpp"
 #include "solver/implicit/implicit_step.hpp"

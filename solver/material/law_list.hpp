@@ -76,7 +76,7 @@ struct OptionsOfLaws;
 template <class... Laws>
 struct OptionsOfLaws<LawList<Laws...>> : Laws::Options... {
   /// The method declares the keys of all laws with defaults, help and what they need of one another.
-  void describe(recipe::Visitor& v, const LawTable& table) { (Laws::Options::describe(v, table), ...); }
+  void describe(recipe::Visitor& v, const LawTable& shown) { (Laws::Options::describe(v, shown), ...); }
   /// The options of one law.
   template <class Law>
   const typename Law::Options& options_of() const {

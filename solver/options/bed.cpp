@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/options/bed.hpp"
 
-#include <cmath>
-
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
@@ -46,9 +44,9 @@ bool is_common(std::string_view key) { return key == "cohesion_Pa" || key == "po
 void BaseOptions::describe(recipe::Visitor& v) {
   choose_law<FrictionLaws>(v, "law", law, "friction between the mass and its bed");
   const std::string name = law_name();
-  const LawTable table{.name = "[solve.base]", .chosen = name};
-  OptionsOfLaws::describe(v, table);
-  FrictionLaws::each([&](auto own) { own.check(v, *this, table); });
+  const LawTable shown{.name = "[solve.base]", .chosen = name};
+  OptionsOfLaws::describe(v, shown);
+  FrictionLaws::each([&](auto own) { own.check(v, *this, shown); });
   v.number("cohesion_Pa", cohesion, recipe::not_negative,
            "traction besides friction, wherever the mass touches its bed");
   v.number("pore_pressure_ratio", pore_pressure_ratio, recipe::Range{0, 1},

@@ -42,10 +42,11 @@ void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
 
 void ImplicitOptions::describe_newton(recipe::Visitor& v) {
   v.number("step_s", step, recipe::positive, "step size; cut where a step does not converge, grown again after");
-  v.optional_number("newmark_alpha", newmark_alpha, recipe::Range{0, 1, true, false},
-                    "newmark: alpha (0.25: trapezoid); left out: 0.5 for what flows, else 0.25");
-  v.optional_number("newmark_beta", newmark_beta, recipe::fraction,
-                    "newmark: beta (0.5: trapezoid; more damps); left out: 1 for what flows, else 0.5");
+  v.numbers("newmark", newmark, recipe::fraction,
+            "newmark: alpha and beta ([0.25, 0.5]: trapezoid; more damps); empty: [0.5, 1] for what flows, else those");
+  v.needs(newmark.empty() || (newmark.size() == 2 && newmark[0] > 0),
+          {"[solve.implicit] newmark is not alpha and beta of Newmark's scheme", "there are two, and alpha is above 0",
+           "Give newmark = [0.25, 0.5], or leave it out"});
   v.optional_number(
       "newton_tolerance", newton_tolerance, recipe::Range{0, 1, true, true},
       "unbalanced force over the forces' size; left out: 1e-2 for newmark's steps of what flows, else 1e-6");
@@ -65,8 +66,7 @@ void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& al
 NewtonScheme scheme_of(const SolveOptions& o) {
   NewtonScheme scheme;
   if (o.integrator == Integrator::newmark && o.material.stiffness_is_free()) scheme = {0.5, 1, 1e-2};
-  scheme.alpha = o.implicit.newmark_alpha.value_or(scheme.alpha);
-  scheme.beta = o.implicit.newmark_beta.value_or(scheme.beta);
+  if (const auto& given = o.implicit.newmark; !given.empty()) scheme.alpha = given[0], scheme.beta = given[1];
   scheme.tolerance = o.implicit.newton_tolerance.value_or(scheme.tolerance);
   return scheme;
 }

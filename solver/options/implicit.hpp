@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "common/recipe/recipe.hpp"
 
@@ -19,8 +20,8 @@ enum class Forcing { fixed, eisenstat_walker };
 
 /// The keys of [solve.implicit].
 struct ImplicitOptions {
-  double step = 0.01;                                 ///< [s]
-  std::optional<double> newmark_alpha, newmark_beta;  ///< none: those of scheme_of()
+  double step = 0.01;                      ///< [s]
+  std::vector<double> newmark;             ///< Newmark's alpha and beta; empty: those of scheme_of()
   std::optional<double> newton_tolerance;  ///< unbalanced force over the forces' size; none: that of scheme_of()
   LinearSolver linear_solver = LinearSolver::pcg;
   double linear_tolerance = 1e-8;  ///< the finest relative residual that a linear system is solved to

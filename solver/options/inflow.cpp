@@ -14,43 +14,38 @@ namespace {
 
 /// This function declares where the line lies.
 void describe_line(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
-  v.numbers("x_m", o.x, recipe::any, "map coordinates of the two ends of the line that material enters through, east");
-  v.numbers("y_m", o.y, recipe::any, "the same, north");
+  v.pairs("line_m", o.line, recipe::any,
+          "map coordinates of the two ends of the line that material enters through: [[east, north], [east, north]]");
   v.text("place", o.place,
-         "instead of both: [[preprocess.place]] of this name; its line called name, or the only one that it has");
-  v.needs(!o.place.empty() || (o.x.size() == 2 && o.y.size() == 2),
-          {fmt::format("{} has {} values of x_m and {} of y_m", shown, o.x.size(), o.y.size()),
+         "instead: [[preprocess.place]] of this name; its line called name, or the only one that it has");
+  v.needs(!o.place.empty() || o.line.size() == 2,
+          {fmt::format("{}: line_m has {} points", shown, o.line.size()),
            "it enters through a straight line between two points",
-           "Give two of each, or place = \"...\" for a line of a vector file"});
-  v.needs(o.place.empty() || (o.x.empty() && o.y.empty()),
-          {fmt::format("{} has place = \"{}\" beside x_m or y_m", shown, o.place), "either says where it enters",
-           "Leave one of them out"});
-  v.needs(o.x.size() != 2 || o.y.size() != 2 || o.x[0] != o.x[1] || o.y[0] != o.y[1],
+           "Give line_m = [[x, y], [x, y]], or place = \"...\" for a line of a vector file"});
+  v.needs(o.place.empty() || o.line.empty(), {fmt::format("{} has place = \"{}\" beside line_m", shown, o.place),
+                                              "either says where it enters", "Leave one of them out"});
+  v.needs(o.line.size() != 2 || o.line[0] != o.line[1],
           {shown + ": both ends of the line are one point", "a line of no length lets nothing through",
-           "Move one of them: x_m = [west, east], y_m = [south, north]"});
+           "Move one of them"});
 }
 
-/// This function declares the hydrograph: a file, or two lists.
+/// This function declares the hydrograph: a file, or its rows.
 void describe_hydrograph(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
-  v.path("file", o.file, "hydrograph: a table of time_s and discharge_m3_s (docs/reference/formats.md); or the lists");
-  v.numbers("times_s", o.times, recipe::not_negative, "hydrograph without a file: times, growing");
-  v.numbers("discharges_m3_s", o.discharges, recipe::not_negative,
-            "discharges at those times, straight lines between; none before the first and after the last");
-  v.needs(o.file.empty() != (o.times.empty() && o.discharges.empty()),
-          {o.file.empty() ? shown + ": neither file nor times_s with discharges_m3_s is given"
-                          : shown + ": file beside times_s or discharges_m3_s",
-           "the hydrograph is one or the other", "Give one of them"});
-  v.needs(
-      o.times.size() == o.discharges.size(),
-      {fmt::format("{} has {} values of times_s and {} of discharges_m3_s", shown, o.times.size(), o.discharges.size()),
-       "each discharge has its time", "Give as many of one as of the other"});
-  v.needs(o.file.empty() ? o.times.empty() || o.times.size() >= 2 : true,
-          {shown + " has one time", "a hydrograph has two rows at least",
-           "Give a constant discharge as two rows: times_s = [0, 60], discharges_m3_s = [10, 10]"});
-  const auto late = std::adjacent_find(o.times.begin(), o.times.end(), [](double a, double b) { return !(b > a); });
-  v.needs(late == o.times.end(),
-          {late == o.times.end() ? std::string()
-                                 : fmt::format("{}: times_s has {:g} before {:g}", shown, *late, *(late + 1)),
+  v.path("file", o.file, "table of time_s and discharge_m3_s (docs/reference/formats.md); or hydrograph");
+  v.pairs("hydrograph", o.hydrograph, recipe::not_negative,
+          "[[time in s, discharge in m3/s], ...] without a file: times growing, straight lines between; nothing before "
+          "the first and after the last");
+  v.needs(o.file.empty() != o.hydrograph.empty(),
+          {shown + (o.file.empty() ? ": neither file nor hydrograph is given" : ": file beside hydrograph"),
+           "the discharge is by one or the other", "Give one of them"});
+  v.needs(o.hydrograph.size() != 1, {shown + ": hydrograph has one row", "it has two at least",
+                                     "Give a constant discharge as two rows: hydrograph = [[0, 10], [60, 10]]"});
+  const auto late = std::adjacent_find(o.hydrograph.begin(), o.hydrograph.end(),
+                                       [](const auto& a, const auto& b) { return !(b[0] > a[0]); });
+  v.needs(late == o.hydrograph.end(),
+          {late == o.hydrograph.end()
+               ? std::string()
+               : fmt::format("{}: hydrograph has time {:g} before {:g}", shown, (*late)[0], (*(late + 1))[0]),
            "times must grow from row to row", "Sort the rows; a jump is two rows a moment apart"});
   v.number("scale", o.scale, recipe::positive, "factor of the discharges");
 }

@@ -18,10 +18,10 @@ struct SolveOptions;
 /// The keys of [[solve.inflow]]: a line on the map through which material enters with a discharge over time.
 struct InflowOptions {
   std::string name;                            ///< empty: inflow-1, inflow-2, ... (inflow_name())
-  std::vector<double> x, y;                    ///< map coordinates of the line's two ends [m]
-  std::string place;                           ///< of the domain, whose line it is; empty: x and y
-  std::filesystem::path file;                  ///< hydrograph; empty: times and discharges
-  std::vector<double> times, discharges;       ///< [s], [m3/s]
+  recipe::Pairs line;                          ///< map coordinates of its two ends [m]
+  std::string place;                           ///< of the domain, whose line it is; empty: `line`
+  std::filesystem::path file;                  ///< hydrograph; empty: the one below
+  recipe::Pairs hydrograph;                    ///< times [s] and discharges [m3/s]
   double scale = 1;                            ///< of the discharges [-]
   std::optional<double> speed, depth, froude;  ///< one of them: along the ground [m/s], at the deepest [m], [-]
   std::optional<double> azimuth;               ///< of the flow, from north over east [deg]; none: across, downhill

@@ -55,8 +55,8 @@ struct LoadOptions {
             {"[[solve.load]] box_m or force_N has the wrong number of values", "a box has six, a force three",
              "Give box_m = [west, east, south, north, bottom, top] and force_N = [east, north, up]"});
     v.number("ramp_s", ramp, recipe::not_negative, "time over which it grows to its full size");
-    v.number("from_s", from, recipe::not_negative, "it pulls from this time");
-    v.number("to_s", to, recipe::not_negative, "to this time");
+    recipe::fixed_list<double>(v, "during_s", {&from, &to}, recipe::not_negative,
+                               "it pulls from the one time to the other", "[[solve.load]]");
   }
 };
 

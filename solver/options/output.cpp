@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/options/output.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -13,33 +14,29 @@ namespace talus::solver {
 
 void GaugeOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "under which its readings are recorded");
-  v.number("x_m", x, recipe::any, "map coordinate, east");
-  v.number("y_m", y, recipe::any, "map coordinate, north");
+  recipe::fixed_list<double>(v, "at_m", {&x, &y}, recipe::any, "map coordinates: east, north", "[[solve.gauge]]");
   v.text("place", place,
-         "instead of both: [[preprocess.place]] of this name; its point called name, or every point under its own");
+         "instead: [[preprocess.place]] of this name; its point called name, or every point under its own");
   v.needs(place.empty() || (x == 0 && y == 0),
-          {fmt::format("[[solve.gauge]] name = \"{}\" has place = \"{}\" beside x_m and y_m", name, place),
+          {fmt::format("[[solve.gauge]] name = \"{}\" has place = \"{}\" beside at_m", name, place),
            "either says where it is", "Leave one of them out"});
 }
 
 void SectionOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "under which its numbers are recorded");
-  v.numbers("x_m", x, recipe::any, "map coordinates of the line's points, east");
-  v.numbers("y_m", y, recipe::any, "the same, north; what crosses from the left of the line to its right counts up");
+  v.pairs("line_m", line, recipe::any,
+          "map coordinates of its points, [[east, north], ...]; what crosses from left to right along them counts up");
   v.text("place", place,
-         "instead of both: [[preprocess.place]] of this name; its line called name, or every line under its own");
+         "instead: [[preprocess.place]] of this name; its line called name, or every line under its own");
   const std::string which = fmt::format("[[solve.section]] name = \"{}\"", name);
-  v.needs(!place.empty() || (x.size() == y.size() && x.size() >= 2),
-          {fmt::format("{} has {} values of x_m and {} of y_m", which, x.size(), y.size()),
-           "a section is a line of two or more points",
-           "Give both for every point of the line, or place = \"...\" for lines of a vector file"});
-  v.needs(place.empty() || (x.empty() && y.empty()),
-          {fmt::format("{} has place = \"{}\" beside x_m or y_m", which, place), "either says where it is",
+  v.needs(!place.empty() || line.size() >= 2,
+          {fmt::format("{}: line_m has {} points", which, line.size()), "a section is a line of two or more points",
+           "Give line_m = [[x, y], [x, y]], or place = \"...\" for lines of a vector file"});
+  v.needs(place.empty() || line.empty(), {fmt::format("{} has place = \"{}\" beside line_m", which, place),
+                                          "either says where it is", "Leave one of them out"});
+  v.needs(std::adjacent_find(line.begin(), line.end()) == line.end(),
+          {which + " gives a point twice, one after the other", "a piece of the line would have no length",
            "Leave one of them out"});
-  bool repeats = false;
-  for (std::size_t i = 1; i < x.size() && i < y.size(); ++i) repeats |= x[i] == x[i - 1] && y[i] == y[i - 1];
-  v.needs(!repeats, {which + " gives a point twice, one after the other", "a piece of the line would have no length",
-                     "Leave one of them out"});
 }
 
 void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {

@@ -21,7 +21,7 @@ inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves",     
 /// The keys of [[solve.gauge]]: a point of the map at which the mass is watched.
 struct GaugeOptions {
   std::string name;
-  double x = 0, y = 0;     ///< map coordinates [m]
+  double x = 0, y = 0;     ///< map coordinates, at_m [m]
   std::string place = {};  ///< of the domain, whose points they are (solver/plan/named_places.hpp); empty: x and y
   /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
@@ -30,8 +30,8 @@ struct GaugeOptions {
 /// The keys of [[solve.section]]: a line on the map through which the mass is counted.
 struct SectionOptions {
   std::string name;
-  std::vector<double> x, y;  ///< map coordinates of the line's points, in order [m]
-  std::string place = {};    ///< of the domain, whose lines they are; empty: x and y
+  recipe::Pairs line = {};  ///< map coordinates of its points, in order [m]
+  std::string place = {};   ///< of the domain, whose lines they are; empty: `line`
   /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };

@@ -91,8 +91,7 @@ SolveOptions with_preset(SolveOptions o) {
   o.transfer = Transfer::flip;
   o.transfer_time = 1e30;
   o.stress_update = StressUpdate::modified;
-  o.implicit.newmark_alpha = 0.25;
-  o.implicit.newmark_beta = 0.5;
+  o.implicit.newmark = {0.25, 0.5};
   o.implicit.newton_tolerance = o.implicit.newton_tolerance.value_or(1e-6);  // of contacts: there is one linear solve
   o.implicit.newton_iterations = 1;
   return o;

@@ -78,13 +78,6 @@ Found found_by(const Wish& wish, const std::vector<DomainPlace>& places, std::ve
   return found;
 }
 
-template <std::size_t axis>
-std::vector<double> coordinates(const MapLine& points) {
-  std::vector<double> values;
-  for (const auto& point : points) values.push_back(point[axis]);
-  return values;
-}
-
 /// The list with what it asks of places put in: make(name, place) gives the options of a line or point. `table` is the
 /// recipe's name of the list, `lines` whether lines are wanted.
 template <class Options, class Make>
@@ -106,7 +99,7 @@ std::vector<Options> placed(const std::vector<Options>& list, const char* table,
 std::vector<SectionOptions> placed(const std::vector<SectionOptions>& sections, const std::vector<DomainPlace>& places,
                                    std::vector<Fault>& faults) {
   return placed(sections, "section", true, places, faults, [](const std::string& name, const DomainPlace& line) {
-    return SectionOptions{.name = name, .x = coordinates<0>(line.points), .y = coordinates<1>(line.points)};
+    return SectionOptions{.name = name, .line = line.points};
   });
 }
 
@@ -147,8 +140,7 @@ void place_line(InflowOptions& o, std::size_t number, const std::vector<DomainPl
     return;
   }
   if (o.name.empty()) o.name = one.name;
-  o.x = {one.points.front()[0], one.points.back()[0]};
-  o.y = {one.points.front()[1], one.points.back()[1]};
+  o.line = {one.points.front(), one.points.back()};
   o.place.clear();
 }
 

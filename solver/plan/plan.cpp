@@ -49,14 +49,9 @@ std::vector<MapPlace> places_of(const Plan& plan) {
   std::erase_if(places, [&](const MapPlace& place) {
     return std::ranges::none_of(o.obstacles, [&](const auto& one) { return place.words == "obstacle " + one.name; });
   });
-  for (const SectionOptions& s : o.sections) {
-    places.push_back({"section " + s.name, {{}}});
-    for (std::size_t i = 0; i < s.x.size(); ++i) places.back().rings[0].push_back({s.x[i], s.y[i]});
-  }
-  for (std::size_t n = 0; n < o.inflows.size(); ++n) {
-    const InflowOptions& i = o.inflows[n];
-    places.push_back({"inflow " + inflow_name(i, n), {{{i.x[0], i.y[0]}, {i.x[1], i.y[1]}}}});
-  }
+  for (const SectionOptions& s : o.sections) places.push_back({"section " + s.name, {s.line}});
+  for (std::size_t n = 0; n < o.inflows.size(); ++n)
+    places.push_back({"inflow " + inflow_name(o.inflows[n], n), {o.inflows[n].line}});
   for (const GaugeOptions& g : o.gauges) places.push_back({"gauge " + g.name, {{{g.x, g.y}}}});
   return places;
 }

@@ -33,8 +33,7 @@ void Stepper::build(const SolverState& state) {
     const NewtonScheme rest = scheme_of(options_);
     o.integrator = choice_->current();
     o.implicit.step = choice_->implicit_step();
-    o.implicit.newmark_alpha = rest.alpha;
-    o.implicit.newmark_beta = rest.beta;
+    o.implicit.newmark = {rest.alpha, rest.beta};
     o.implicit.newton_tolerance = rest.tolerance;
   }
   solver_ = resume_solver(scene_, o, device_, state);

@@ -135,9 +135,12 @@ double Hydrograph::peak() const { return *std::max_element(discharges_.begin(), 
 
 Hydrograph read_hydrograph(const InflowOptions& options, const std::string& place) {
   if (!options.file.empty()) return HydrographReader(options.file, place).read(options.scale);
-  std::vector<double> discharges = options.discharges;
-  for (double& discharge : discharges) discharge *= options.scale;
-  return {options.times, std::move(discharges)};
+  std::vector<double> times, discharges;
+  for (const auto& [time, discharge] : options.hydrograph) {
+    times.push_back(time);
+    discharges.push_back(discharge * options.scale);
+  }
+  return {std::move(times), std::move(discharges)};
 }
 
 }  // namespace talus::solver

@@ -3,6 +3,7 @@
 #include "solver/scene/inflow_line.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -18,15 +19,15 @@ constexpr double level_ground = 1e-6;
 /// The least angle between the flow and its line, as its sine [-]: 30 degrees.
 constexpr double least_sine = 0.5;
 
-CellPlace cells_of(const MapGrid& map, double x, double y) {
-  return {(x - map.west) / map.cell - 0.5, (y - map.south) / map.cell - 0.5};
+CellPlace cells_of(const MapGrid& map, const std::array<double, 2>& at) {
+  return {(at[0] - map.west) / map.cell - 0.5, (at[1] - map.south) / map.cell - 0.5};
 }
 
 void refuse_outside(const InflowOptions& o, const std::string& place, const MapGrid& map, std::size_t end) {
   throw RecipeError(
-      {fmt::format("{}: ({}, {}) lies outside the known ground, or at its edge", place, o.x[end], o.y[end]),
+      {fmt::format("{}: ({}, {}) lies outside the known ground, or at its edge", place, o.line[end][0], o.line[end][1]),
        "what enters needs known ground one cell around it",
-       fmt::format("Choose x_m from {} to {} and y_m from {} to {}, away from cells without elevation", map.x(1),
+       fmt::format("Choose x from {} to {} and y from {} to {}, away from cells without elevation", map.x(1),
                    map.x(map.columns - 2), map.y(1), map.y(map.rows - 2))});
 }
 
@@ -71,8 +72,8 @@ CellPlace InflowTerrain::slope(const CellPlace& at) const {
 InflowLine inflow_line(const InflowOptions& o, const std::string& place, const MapGrid& map,
                        const InflowTerrain& terrain) {
   InflowLine line;
-  line.from = cells_of(map, o.x[0], o.y[0]);
-  line.to = cells_of(map, o.x[1], o.y[1]);
+  line.from = cells_of(map, o.line[0]);
+  line.to = cells_of(map, o.line[1]);
   for (std::size_t end = 0; end < 2; ++end)
     if (!terrain.open(end == 0 ? line.from : line.to)) refuse_outside(o, place, map, end);
   const double x = line.to[0] - line.from[0], y = line.to[1] - line.from[1], length = std::hypot(x, y);

@@ -137,16 +137,17 @@ TEST(Library, shaking_in_memory_is_that_of_a_file) {
 }
 
 TEST(Library, a_table_of_one_coefficient_is_coulombs_law_and_a_falling_one_lets_go) {
-  const auto table = [](const std::string& coefficients) {
-    return "[solve.base]\nlaw = \"table\"\ntable_speed_m_s = [0, 0.5, 2]\ntable_coefficient = [" + coefficients + "]\n";
+  const auto table = [](double rest, double slow, double fast) {
+    return fmt::format("[solve.base]\nlaw = \"table\"\ntable = [[0, {:.17g}], [0.5, {:.17g}], [2, {:.17g}]]\n", rest,
+                       slow, fast);
   };
   for (const std::string keys : {"", "integrator = \"column-implicit\"\n", "precision = \"single\"\n"}) {
     SCOPED_TRACE(keys);
     const Site site = slope();
     const double mu = std::tan(15 * 3.14159265358979323846 / 180);
-    const Result constant = run_on_cpu(site, moving(table(fmt::format("{0:.17g}, {0:.17g}, {0:.17g}", mu)), keys));
+    const Result constant = run_on_cpu(site, moving(table(mu, mu, mu), keys));
     EXPECT_EQ(constant.maps.deposit_thickness, run_on_cpu(site, moving(coulomb, keys)).maps.deposit_thickness);
-    const Result falling = run_on_cpu(site, moving(table(fmt::format("{0:.17g}, 0.1, 0.05", mu)), keys));
+    const Result falling = run_on_cpu(site, moving(table(mu, 0.1, 0.05), keys));
     EXPECT_GT(falling.history.at("kinetic_J").values.back(), 1.1 * constant.history.at("kinetic_J").values.back());
   }
 }

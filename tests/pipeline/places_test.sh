@@ -58,25 +58,22 @@ test_lines_and_points_of_a_geopackage_are_those_of_the_recipe() {
   expect_exit 0 postprocess
   grep -q 'section below' out/report.html || fail "the report does not know the section"
   cp out/sections.csv sections-by-file.csv && cp out/gauges.csv gauges-by-file.csv
-  grep -Eq '^x_m = \[500(080|079[.]9)' out/solve.used.toml ||
+  grep -Eq '^line_m = \[\[500(080|079[.]9)' out/solve.used.toml ||
     fail "the used recipe lacks the coordinates: $(<out/solve.used.toml)"
   grep -q 'places.gpkg.*[0-9a-f]\{64\}' out/preprocess.used.toml || fail "the file has no checksum"
   sed -i '/^\[\[preprocess.place\]\]/,$d' recipe.toml
   cat >>recipe.toml <<'TOML'
 [[solve.section]]
 name = "below"
-x_m = [500080.0, 500080.0]
-y_m = [5000020.0, 5000180.0]
+line_m = [[500080.0, 5000020.0], [500080.0, 5000180.0]]
 
 [[solve.section]]
 name = "far-side"
-x_m = [500120.0, 500120.0]
-y_m = [5000020.0, 5000180.0]
+line_m = [[500120.0, 5000020.0], [500120.0, 5000180.0]]
 
 [[solve.gauge]]
 name = "bridge"
-x_m = 500075.0
-y_m = 5000100.0
+at_m = [500075.0, 5000100.0]
 TOML
   expect_exit 0 preprocess
   expect_exit 0 solve
@@ -139,8 +136,7 @@ place = "sections"
 
 [[solve.inflow]]
 place = "inlet"
-times_s = [0.0, 3.0]
-discharges_m3_s = [60.0, 60.0]
+hydrograph = [[0.0, 60.0], [3.0, 60.0]]
 speed_m_s = 4.0
 TOML
 }

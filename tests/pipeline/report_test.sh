@@ -9,7 +9,7 @@ made() {
   scene
   sed -i 's/^end_time_s.*/end_time_s = 3.0\nframe_interval_s = 0.5/' recipe.toml
   echo 'sigma_m = 0.2' >>recipe.toml   # of the survey: scores get a spread
-  printf '[[solve.gauge]]\nname = "%s"\nx_m = %s\ny_m = 5000100.0\n' source 500050.0 below 500090.0 >>recipe.toml
+  printf '[[solve.gauge]]\nname = "%s"\nat_m = [%s, 5000100.0]\n' source 500050.0 below 500090.0 >>recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve
   expect_exit 0 postprocess
@@ -99,10 +99,10 @@ test_has_a_curve_for_each_gauge() {
 
 test_refuses_a_gauge_outside_the_domain() {
   scene
-  printf '[[solve.gauge]]\nname = "far"\nx_m = 1.0\ny_m = 2.0\n' >>recipe.toml
+  printf '[[solve.gauge]]\nname = "far"\nat_m = [1.0, 2.0]\n' >>recipe.toml
   expect_exit 0 preprocess
   expect_exit 2 solve --check
-  expect_words 'name = "far": (1, 2) lies outside the domain' 'Choose x_m from 500005'
+  expect_words 'name = "far": (1, 2) lies outside the domain' 'Choose x from 500005'
 }
 
 # Neither address nor file beside it: the page must hold all it needs.

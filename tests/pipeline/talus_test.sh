@@ -197,7 +197,7 @@ test_a_signal_reaches_the_stage_and_the_next_call_goes_on() {
 
 test_a_failing_stage_ends_the_command_with_its_exit_code() {
   scene
-  expect_exit 2 run --set 'solve.gauge=[{name = "far", x_m = 0, y_m = 0}]'
+  expect_exit 2 run --set 'solve.gauge=[{name = "far", at_m = [0, 0]}]'
   expect_words 'talus-solve: ' 'far'
   [[ ! -f out/score.json ]] || fail "scores of no run"
 }
@@ -249,7 +249,7 @@ test_check_looks_at_physics_and_data_too() {
   expect_words 'warning: solve: the mass gives way inside before it slides on its bed'
   # A gauge off the map, and a survey that is not there: two stages, one listing.
   rm survey.asc
-  expect_exit 3 "$bin/talus" check recipe.toml --set 'solve.gauge=[{name = "far", x_m = 0, y_m = 0}]'
+  expect_exit 3 "$bin/talus" check recipe.toml --set 'solve.gauge=[{name = "far", at_m = [0, 0]}]'
   expect_words 'solve: ' '"far"' 'survey.asc: no such file' 'recipe.toml: 2 faults'
 }
 

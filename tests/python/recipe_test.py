@@ -22,12 +22,12 @@ class RecipeTest(unittest.TestCase):
         with self.assertRaises(KeyError):
             recipe["solve.cfl"]
         recipe["solve.implicit.step_s"] = 0.1  # a table that is not there is made
-        recipe["solve.gauge"] = [{"name": "bridge", "x_m": 1.0}]
-        recipe["solve.gauge[0].x_m"] = 2.0
-        self.assertEqual(recipe["solve.gauge[0].x_m"], 2.0)
-        self.assertEqual(list(recipe.changes), ["solve.implicit.step_s", "solve.gauge", "solve.gauge[0].x_m"])
-        self.assertEqual(recipe.changes["solve.gauge"], [{"name": "bridge", "x_m": 1.0}])
-        for key in ("solve.gauge[1].x_m", "solve.part[0].law", "scene.name.more", "scene.name[0]"):
+        recipe["solve.gauge"] = [{"name": "bridge", "at_m": [1.0, 2.0]}]
+        recipe["solve.gauge[0].at_m"] = [2.0, 3.0]
+        self.assertEqual(recipe["solve.gauge[0].at_m"], [2.0, 3.0])
+        self.assertEqual(list(recipe.changes), ["solve.implicit.step_s", "solve.gauge", "solve.gauge[0].at_m"])
+        self.assertEqual(recipe.changes["solve.gauge"], [{"name": "bridge", "at_m": [1.0, 2.0]}])
+        for key in ("solve.gauge[1].at_m", "solve.part[0].law", "scene.name.more", "scene.name[0]"):
             with self.assertRaises(KeyError, msg=key):
                 recipe[key] = 1
         with self.assertRaisesRegex(talus.TalusError, "is no key"):

@@ -9,7 +9,7 @@ unit='_(kg_m3|m3_s|m2_s|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|kPa|Pa|N|MB)$'
 # described FILE: "line kind key member" of every key that the file describes with a member.
 described() {
   local file=$1 at text
-  local visit='v\.(number|optional_number|integer|flag|text|path|numbers|integers)\('
+  local visit='v\.(number|optional_number|integer|flag|text|path|numbers|pairs|integers)\('
   local call="($visit|(choice|list|table)\\(\\s*v,)"'\s*"[A-Za-z0-9_]+",\s*[A-Za-z_][A-Za-z0-9_.]*'
   { grep -zobP "$call" "$file" || true; } | tr '\n' ' ' | tr '\0' '\n' | while IFS=: read -r at text; do
     printf '%s %s\n' "$(($(head -c "$at" "$file" | wc -l) + 1))" \

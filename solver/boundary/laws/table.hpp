@@ -4,9 +4,7 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
 #include <string>
-#include <vector>
 
 #include "solver/boundary/laws/basal_law.hpp"
 
@@ -19,39 +17,33 @@ struct FrictionTable : BasalLaw {
 
   /// The keys of the law: the rows of the table.
   struct Options {
-    std::vector<double> table_speed{0, 10};            ///< [m/s]
-    std::vector<double> table_coefficient{0.6, 0.25};  ///< [-]
+    recipe::Pairs table{{0, 0.6}, {10, 0.25}};  ///< slip speeds [m/s] and coefficients [-]
 
     /// The method declares the keys with defaults, help and what they need of one another.
-    void describe(recipe::Visitor& v, const LawTable& table) {
-      v.numbers("table_speed_m_s", table_speed, recipe::not_negative,
-                "table: slip speeds, each larger than the one before, at most 24; friction is linear between them");
-      v.numbers("table_coefficient", table_coefficient, recipe::not_negative,
-                "table: friction coefficient at each of these speeds; the first and the last hold beyond them");
-      const std::size_t rows = table_speed.size();
-      v.needs(rows == table_coefficient.size(),
-              {table.name + " table_speed_m_s has " + std::to_string(rows) + " values, table_coefficient " +
-                   std::to_string(table_coefficient.size()),
-               "each speed has one coefficient", "Give both lists with equal lengths"});
-      v.needs(rows >= 1 && rows <= most_rows,
-              {table.name + " table_speed_m_s has " + std::to_string(rows) + " values", "a table has 1 to 24 rows",
+    void describe(recipe::Visitor& v, const LawTable& law) {
+      v.pairs("table", table, recipe::not_negative,
+              "table: [[slip speed in m/s, friction coefficient], ...], at most 24 rows, each faster than the one "
+              "before; linear between them, the first and the last hold beyond them");
+      v.needs(!table.empty() && table.size() <= most_rows,
+              {law.name + " table has " + std::to_string(table.size()) + " rows", "it has 1 to 24",
                "Leave out rows that lie on a line between their neighbours"});
-      v.needs(std::adjacent_find(table_speed.begin(), table_speed.end(), std::greater_equal<>()) == table_speed.end(),
-              {table.name + " table_speed_m_s is not increasing", "a speed has one coefficient",
+      const auto slower = [](const auto& a, const auto& b) { return a[0] >= b[0]; };
+      v.needs(std::adjacent_find(table.begin(), table.end(), slower) == table.end(),
+              {law.name + " table: speeds do not increase", "a speed has one coefficient",
                "Sort the rows by speed, and leave out repeated speeds"});
     }
   };
   /// Whether the law looks at a key.
-  static bool uses(std::string_view key) { return key == "table_speed_m_s" || key == "table_coefficient"; }
+  static bool uses(std::string_view key) { return key == "table"; }
   /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
-    return "table of " + std::to_string(o.table_speed.size()) + " speeds, " + ends(o);
+    return "table of " + std::to_string(o.table.size()) + " speeds, " + ends(o);
   }
   /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
   static std::string sentence(const All& o) {
-    return "friction by a table of " + std::to_string(o.table_speed.size()) + " slip speeds, " + ends(o);
+    return "friction by a table of " + std::to_string(o.table.size()) + " slip speeds, " + ends(o);
   }
 
   enum Number { count };  ///< no numbers of a place
@@ -63,9 +55,9 @@ struct FrictionTable : BasalLaw {
   template <class All>
   static void constants(const All& o, const BedSetting& setting, double* c) {
     for (std::size_t row = 0; row < most_rows; ++row) {
-      const std::size_t given = std::min(row, o.table_speed.size() - 1);
-      c[speed + row] = o.table_speed[given];
-      c[mu + row] = setting.borne * o.table_coefficient[given];
+      const auto& [v, coefficient] = o.table[std::min(row, o.table.size() - 1)];
+      c[speed + row] = v;
+      c[mu + row] = setting.borne * coefficient;
     }
   }
 
@@ -82,8 +74,8 @@ struct FrictionTable : BasalLaw {
  private:
   template <class All>
   static std::string ends(const All& o) {
-    return six_digits(o.table_coefficient.front()) + " at " + six_digits(o.table_speed.front()) + " m/s to " +
-           six_digits(o.table_coefficient.back()) + " at " + six_digits(o.table_speed.back()) + " m/s";
+    const auto row = [](const auto& r) { return six_digits(r[1]) + " at " + six_digits(r[0]) + " m/s"; };
+    return row(o.table.front()) + " to " + row(o.table.back());
   }
 };
 

@@ -47,7 +47,7 @@ void check_places(const std::vector<GaugeOptions>& gauges, const Scene& scene) {
     if (has_terrain_around(scene, in_cells(g.x, map.west, map.cell), in_cells(g.y, map.south, map.cell))) continue;
     faults.push_back({fmt::format("[[solve.gauge]] name = \"{}\": ({}, {}) lies outside the domain", g.name, g.x, g.y),
                       "a gauge reads between four cells with terrain",
-                      fmt::format("Choose x_m from {} to {} and y_m from {} to {}, where the elevation model has data",
+                      fmt::format("Choose x from {} to {} and y from {} to {}, where the elevation model has data",
                                   map.x(0), map.x(map.columns - 1), map.y(0), map.y(map.rows - 1))});
   }
   if (!faults.empty()) throw RecipeError(std::move(faults));

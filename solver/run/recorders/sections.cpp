@@ -41,17 +41,12 @@ double cells_from_first(double coordinate, double edge, double cell) { return (c
 void check_lines(const std::vector<SectionOptions>& sections, const MapGrid& map) {
   std::vector<Fault> faults;
   for (const SectionOptions& s : sections) {
-    const auto beyond = [&](std::size_t i) {
-      return !(s.x[i] >= map.x(0) && s.x[i] <= map.x(map.columns - 1) && s.y[i] >= map.y(0) &&
-               s.y[i] <= map.y(map.rows - 1));
-    };
-    for (std::size_t i = 0; i < s.x.size(); ++i) {
-      if (!beyond(i)) continue;
-      faults.push_back(
-          {fmt::format("[[solve.section]] name = \"{}\": ({}, {}) lies outside the domain", s.name, s.x[i], s.y[i]),
-           "nothing is computed there",
-           fmt::format("Choose x_m from {} to {} and y_m from {} to {}", map.x(0), map.x(map.columns - 1), map.y(0),
-                       map.y(map.rows - 1))});
+    for (const auto& [x, y] : s.line) {
+      if (x >= map.x(0) && x <= map.x(map.columns - 1) && y >= map.y(0) && y <= map.y(map.rows - 1)) continue;
+      faults.push_back({fmt::format("[[solve.section]] name = \"{}\": ({}, {}) lies outside the domain", s.name, x, y),
+                        "nothing is computed there",
+                        fmt::format("Choose x from {} to {} and y from {} to {}", map.x(0), map.x(map.columns - 1),
+                                    map.y(0), map.y(map.rows - 1))});
       break;
     }
   }
@@ -122,9 +117,9 @@ SectionRecorder::SectionRecorder(const SolveOptions& options, const Scene& scene
 /// The line of a section on the grid, with its copies across the way from its first point to its last.
 SectionRecorder::Line SectionRecorder::line_of(const SectionOptions& options, const MapGrid& map) {
   Line line{options.name, {}, {}, {1e300, 1e300}, {-1e300, -1e300}};
-  for (std::size_t i = 0; i < options.x.size(); ++i)
-    line.places.push_back({cells_from_first(options.x[i], map.west, map.cell) + off_lattice[0],
-                           cells_from_first(options.y[i], map.south, map.cell) + off_lattice[1]});
+  for (const auto& [x, y] : options.line)
+    line.places.push_back({cells_from_first(x, map.west, map.cell) + off_lattice[0],
+                           cells_from_first(y, map.south, map.cell) + off_lattice[1]});
   const MapPlace& first = line.places.front();
   const bool closed = std::hypot(line.places.back()[0] - first[0], line.places.back()[1] - first[1]) < 1e-6;
   const MapPlace& last = closed ? line.places[1] : line.places.back();

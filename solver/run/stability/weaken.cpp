@@ -3,7 +3,6 @@
 #include "solver/run/stability/weaken.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace talus::solver {

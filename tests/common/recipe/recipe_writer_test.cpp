@@ -40,6 +40,22 @@ TEST(RecipeWriter, template_of_the_defaults_reads_back_to_the_defaults) {
   EXPECT_EQ(read_back(to_toml(SampleOptions{}, "solve", true)), SampleOptions{});
 }
 
+struct Rows {
+  recipe::Pairs line{{0, 1}, {2.5, 3}};
+  void describe(recipe::Visitor& v) { v.pairs("line_m", line, recipe::not_negative, "a line"); }
+};
+
+TEST(RecipeWriter, rows_of_two_numbers_read_back_and_others_are_refused) {
+  EXPECT_EQ(to_toml(Rows{}, "solve", false), "[solve]\nline_m = [[0.0, 1.0], [2.5, 3.0]]\n");
+  const auto read = [](const std::string& text) { return recipe::Recipe::parse(text).read<Rows>("solve").line; };
+  EXPECT_EQ(read("[solve]\n"), Rows{}.line);
+  EXPECT_EQ(read("[solve]\nline_m = [[4, 5.5]]"), (recipe::Pairs{{4, 5.5}}));
+  EXPECT_EQ(test::fault_of<RecipeError>([&] { read("[solve]\nline_m = [[1, 2], [3], 4, [5, -6]]"); }),
+            "recipe.toml:2:19: [solve] line_m[1] (a row of two numbers is wanted). Write line_m = [[a, b], ...]\n"
+            "recipe.toml:2:24: [solve] line_m[2] = 4 (a row of two numbers is wanted). Write line_m = [[a, b], ...]\n"
+            "recipe.toml:2:31: [solve] line_m[3][1] = -6 (out of range). It must be >= 0");
+}
+
 TEST(RecipeWriter, template_shows_help_range_and_choices_of_every_key) {
   const std::string text = to_toml(SampleOptions{}, "solve", true);
   for (const char* expected :

@@ -72,7 +72,7 @@ TEST(BedNumbers, reach_the_numbers_of_a_place_and_no_others_do) {
       BaseOptions options;
       const Made<Law> before(options);
       if constexpr (std::is_same_v<Law, FrictionTable>) {
-        (key == "table_coefficient" ? options.table_coefficient : options.table_speed).back() *= 0.9;
+        options.table.back()[0] *= 0.9;
       } else {
         double* const number = options.named(key);
         ASSERT_NE(number, nullptr) << key;

@@ -36,8 +36,7 @@ SolveOptions rigid(Integrator integrator) {
   o.material.model = MaterialModel::hencky;
   o.material.youngs_modulus = 1e8;
   o.implicit.step = 0.005;
-  o.implicit.newmark_alpha = 0.5;
-  o.implicit.newmark_beta = 1;
+  o.implicit.newmark = {0.5, 1};
   return o;
 }
 

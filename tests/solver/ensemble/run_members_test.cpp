@@ -97,8 +97,8 @@ TEST_P(RunMembers, lets_in_what_each_member_alone_would_let_in) {
   table.columns = {{"solve.inflow[0].scale", {0.5, 1, 2}, {}}, {"solve.inflow[0].speed_m_s", {3, 4, 4}, {}}};
   table.own_domain.assign(3, 0);
   const SmallEnsemble ensemble(table,
-                               "[[solve.inflow]]\nx_m = [28.0, 28.0]\ny_m = [5.0, 11.0]\ntimes_s = [0.0, 0.5, 1.5]\n"
-                               "discharges_m3_s = [0.0, 12.0, 0.0]\nspeed_m_s = 4.0\n");
+                               "[[solve.inflow]]\nline_m = [[28.0, 5.0], [28.0, 11.0]]\n"
+                               "hydrograph = [[0.0, 0.0], [0.5, 12.0], [1.5, 0.0]]\nspeed_m_s = 4.0\n");
   expect_members_as_alone(ensemble, GetParam());
   const Members members = ensemble.members();
   const double heap = 64;

@@ -155,8 +155,7 @@ TEST_P(ImplicitContact, slides_down_an_incline_with_friction) {
   fill(d, {4, 10, 5, 11, 0, 2});
   SolveOptions o;
   o.integrator = Integrator::newmark;
-  o.implicit.newmark_beta = 1;  // backward Euler in velocity
-  o.implicit.newmark_alpha = 0.5;
+  o.implicit.newmark = {0.5, 1};  // backward Euler in velocity
   o.implicit.step = 0.02;
   o.material.model = MaterialModel::hencky;
   o.material.youngs_modulus = 1e8;

@@ -14,8 +14,8 @@
 namespace talus::solver {
 namespace {
 
-const std::string line = "x_m = [0.0, 10.0]\ny_m = [5.0, 5.0]\n";
-const std::string rows = "times_s = [0.0, 60.0]\ndischarges_m3_s = [3.0, 0.0]\n";
+const std::string line = "line_m = [[0.0, 5.0], [10.0, 5.0]]\n";
+const std::string rows = "hydrograph = [[0.0, 3.0], [60.0, 0.0]]\n";
 
 /// What a recipe with these lines in [solve] and in [[solve.inflow]] is refused with; empty where it is sound.
 std::string inflow_faults(const std::string& inflow, const std::string& solve = "") {
@@ -34,18 +34,19 @@ TEST(InflowOptions, take_a_line_a_hydrograph_and_one_of_speed_depth_and_froude_n
   EXPECT_EQ(inflow_faults(line + "file = \"q.csv\"\nspeed_m_s = 4.0"), "");
   expect_words(inflow_faults(line + rows), "0 of speed_m_s, depth_m and froude are given");
   expect_words(inflow_faults(line + rows + "speed_m_s = 4.0\nfroude = 1.0"), "2 of speed_m_s");
-  expect_words(inflow_faults(rows + "froude = 1.0"), "0 values of x_m and 0 of y_m");
-  expect_words(inflow_faults("x_m = [1.0, 1.0]\ny_m = [5.0, 5.0]\n" + rows + "froude = 1.0"), "one point");
+  expect_words(inflow_faults(rows + "froude = 1.0"), "line_m has 0 points");
+  expect_words(inflow_faults("line_m = [[1.0, 5.0], [1.0, 5.0]]\n" + rows + "froude = 1.0"), "one point");
 }
 
 TEST(InflowOptions, refuse_rows_that_are_no_hydrograph) {
   const std::string rest = line + "froude = 1.0\n";
-  expect_words(inflow_faults(rest), "neither file nor times_s");
-  expect_words(inflow_faults(rest + rows + "file = \"q.csv\""), "file beside times_s");
-  expect_words(inflow_faults(rest + "times_s = [0.0, 5.0, 5.0]\ndischarges_m3_s = [1.0, 2.0, 3.0]"), "5 before 5");
-  expect_words(inflow_faults(rest + "times_s = [0.0, 5.0]\ndischarges_m3_s = [1.0]"), "2 values of times_s and 1");
-  expect_words(inflow_faults(rest + "times_s = [0.0]\ndischarges_m3_s = [1.0]"), "has one time");
-  expect_words(inflow_faults(rest + "times_s = [0.0, 5.0]\ndischarges_m3_s = [1.0, -2.0]"), "discharges_m3_s");
+  expect_words(inflow_faults(rest), "neither file nor hydrograph");
+  expect_words(inflow_faults(rest + rows + "file = \"q.csv\""), "file beside hydrograph");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0], [5.0, 2.0], [5.0, 3.0]]"), "5 before 5");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0], [5.0]]"),
+               "hydrograph[1] (a row of two numbers is wanted)");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0]]"), "has one row");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0], [5.0, -2.0]]"), "hydrograph[1][1] = -2");
 }
 
 TEST(InflowOptions, go_with_every_integrator_that_has_inertia) {

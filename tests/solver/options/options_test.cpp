@@ -145,7 +145,7 @@ TEST(SolveOptions, means_over_elements_need_implicit_steps_and_a_pressure_of_the
 }
 
 TEST(SolveOptions, gauges_have_names_of_their_own) {
-  EXPECT_EQ(faults("[[solve.gauge]]\nname=\"a\"\nx_m=1.0\ny_m=2.0\n[[solve.gauge]]\nname=\"a\"\n[[solve.gauge]]"),
+  EXPECT_EQ(faults("[[solve.gauge]]\nname=\"a\"\nat_m=[1.0, 2.0]\n[[solve.gauge]]\nname=\"a\"\n[[solve.gauge]]"),
             "[[solve.gauge]] name = \"a\" is given twice (its readings are recorded under its name). Rename one\n"
             "[[solve.gauge]] number 3: name = \"\" (its readings are recorded under its name). Give it one of letters, "
             "digits, - and _");

@@ -18,10 +18,8 @@ Domain tilted() {
 SolveOptions letting_in(double discharge) {
   SolveOptions o;
   InflowOptions inflow;
-  inflow.x = {10, 10};
-  inflow.y = {10, 30};
-  inflow.times = {0, 20};
-  inflow.discharges = {discharge, discharge};
+  inflow.line = {{10, 10}, {10, 30}};
+  inflow.hydrograph = {{0, discharge}, {20, discharge}};
   inflow.speed = 5;
   o.inflows = {inflow};
   o.end_time = 30;

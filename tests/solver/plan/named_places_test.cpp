@@ -35,18 +35,17 @@ std::string faults(const std::string& tables) {
   return text;
 }
 
-const std::string flow = "times_s = [0.0, 9.0]\ndischarges_m3_s = [1.0, 1.0]\nspeed_m_s = 2.0\n";
+const std::string flow = "hydrograph = [[0.0, 1.0], [9.0, 1.0]]\nspeed_m_s = 2.0\n";
 
 TEST(NamedPlaces, every_line_is_a_section_and_every_point_a_gauge_under_its_own_name) {
   const SolveOptions o = placed_options(
-      "[[solve.section]]\nname = \"first\"\nx_m = [1.0, 2.0]\ny_m = [3.0, 4.0]\n[[solve.section]]\nplace = \"lines\"\n"
+      "[[solve.section]]\nname = \"first\"\nline_m = [[1.0, 3.0], [2.0, 4.0]]\n[[solve.section]]\nplace = \"lines\"\n"
       "[[solve.gauge]]\nplace = \"points\"\n");
   ASSERT_EQ(o.sections.size(), 3U);
   EXPECT_EQ(o.sections[0].name, "first");
   EXPECT_EQ(o.sections[1].name, "gully");
-  EXPECT_EQ(o.sections[1].x, (std::vector<double>{1, 3, 5}));
-  EXPECT_EQ(o.sections[1].y, (std::vector<double>{2, 4, 5}));
-  EXPECT_EQ(o.sections[2].y, (std::vector<double>{0, 0.1}));
+  EXPECT_EQ(o.sections[1].line, (recipe::Pairs{{1, 2}, {3, 4}, {5, 5}}));
+  EXPECT_EQ(o.sections[2].line, places[1].points);
   ASSERT_EQ(o.gauges.size(), 2U);
   EXPECT_EQ(o.gauges[1].name, "bridge");
   EXPECT_EQ(o.gauges[1].x, 9);
@@ -59,16 +58,15 @@ TEST(NamedPlaces, a_name_chooses_one_and_renames_the_only_one) {
   ASSERT_EQ(o.sections.size(), 2U);
   EXPECT_EQ(o.sections[0].name, "road");
   EXPECT_EQ(o.sections[1].name, "top");
-  EXPECT_EQ(o.sections[1].x, (std::vector<double>{0, 5, 10}));
+  EXPECT_EQ(o.sections[1].line, (recipe::Pairs{{0, 0}, {5, 0.02}, {10, 0}}));
 }
 
 TEST(NamedPlaces, an_inflow_enters_through_the_ends_of_a_straight_line) {
   const SolveOptions o = placed_options("[[solve.inflow]]\nplace = \"head\"\n" + flow +
                                         "[[solve.inflow]]\nplace = \"lines\"\nname = \"road\"\n" + flow);
   EXPECT_EQ(o.inflows[0].name, "inlet");
-  EXPECT_EQ(o.inflows[0].x, (std::vector<double>{0, 10}));
-  EXPECT_EQ(o.inflows[0].y, (std::vector<double>{0, 0}));
-  EXPECT_EQ(o.inflows[1].y, (std::vector<double>{0, 0.1}));
+  EXPECT_EQ(o.inflows[0].line, (recipe::Pairs{{0, 0}, {10, 0}}));
+  EXPECT_EQ(o.inflows[1].line, places[1].points);
   EXPECT_EQ(
       faults("[[solve.inflow]]\nplace = \"lines\"\nname = \"gully\"\n" + flow),
       "[[solve.inflow]] number 1: the line \"gully\" of the place \"lines\" is not straight | it enters through a "
@@ -85,13 +83,13 @@ TEST(NamedPlaces, what_the_domain_does_not_have_is_refused_with_what_it_has) {
             "[[solve.section]] number 1: \"house\" of the place \"points\" is a point | the section is a line\n"
             "[[solve.gauge]] number 1: \"inlet\" of the place \"head\" is a line | a gauge is a point\n");
   SolveOptions o;
-  o.sections = {{.name = "", .x = {}, .y = {}, .place = "lines"}};
+  o.sections = {{.name = "", .place = "lines"}};
   EXPECT_NE(test::fault_of<RecipeError>([&] { with_places(o, {}); }).find("domain.vdb has no places"),
             std::string::npos);
 }
 
 TEST(NamedPlaces, two_of_one_name_are_refused) {
-  EXPECT_EQ(faults("[[solve.section]]\nname = \"road\"\nx_m = [1.0, 2.0]\ny_m = [3.0, 4.0]\n[[solve.section]]\nplace = "
+  EXPECT_EQ(faults("[[solve.section]]\nname = \"road\"\nline_m = [[1.0, 3.0], [2.0, 4.0]]\n[[solve.section]]\nplace = "
                    "\"lines\"\n"),
             "[[solve.section]]: two are called \"road\" | numbers are recorded under names\n");
 }
@@ -100,9 +98,10 @@ TEST(NamedPlaces, coordinates_beside_a_place_are_refused) {
   const auto said = [](const std::string& tables, const std::string& words) {
     EXPECT_NE(faults(tables).find(words), std::string::npos) << faults(tables);
   };
-  said("[[solve.section]]\nname = \"a\"\nplace = \"lines\"\nx_m = [1.0, 2.0]\n", "place = \"lines\" beside x_m or y_m");
-  said("[[solve.gauge]]\nname = \"a\"\nplace = \"points\"\nx_m = 1.0\n", "place = \"points\" beside x_m and y_m");
-  said("[[solve.inflow]]\nplace = \"head\"\ny_m = [1.0, 2.0]\n" + flow, "place = \"head\" beside x_m or y_m");
+  said("[[solve.section]]\nname = \"a\"\nplace = \"lines\"\nline_m = [[1.0, 2.0]]\n",
+       "place = \"lines\" beside line_m");
+  said("[[solve.gauge]]\nname = \"a\"\nplace = \"points\"\nat_m = [1.0, 0.0]\n", "place = \"points\" beside at_m");
+  said("[[solve.inflow]]\nplace = \"head\"\nline_m = [[1.0, 2.0]]\n" + flow, "place = \"head\" beside line_m");
 }
 
 TEST(NamedPlaces, options_with_places_come_back_from_what_was_used) {

@@ -126,8 +126,7 @@ TEST_P(BlockOnIncline, is_slowed_by_drag_and_cohesion) {
       SolveOptions o = options(c);
       o.integrator = integrator;
       o.implicit.step = 0.005;
-      o.implicit.newmark_alpha = 0.5;
-      o.implicit.newmark_beta = 1;
+      o.implicit.newmark = {0.5, 1};
       double expected = 0;
       if (drag) {  // Voellmy (1955): dv/dt = pull - g v^2 / (xi thickness)
         o.base.law = FrictionLaw::voellmy;

@@ -47,8 +47,7 @@ class ColumnLaws : public InEachPlace {
     o.walls = {{Axis::y, 2, Side::above, WallKind::roller}, {Axis::y, 6, Side::below, WallKind::roller}};
     o.integrator = s.integrator;
     o.implicit.step = 0.005;
-    o.implicit.newmark_alpha = 0.5;
-    o.implicit.newmark_beta = 1;
+    o.implicit.newmark = {0.5, 1};
     return o;
   }
   /// The speed that the inside of a slab has after a time [m/s].

@@ -45,7 +45,7 @@ RunHistory break_dam(On on, int layers, int wide = 1) {
   o.walls = {{Axis::x, -reservoir + 4 * cell, Side::above, WallKind::roller},
              {Axis::y, 0, Side::above, WallKind::roller},
              {Axis::y, width, Side::below, WallKind::roller}};
-  o.sections = {{.name = "dam", .x = {0, 0}, .y = {width + 3 * cell, -2 * cell}}};
+  o.sections = {{.name = "dam", .line = {{0, width + 3 * cell}, {0, -2 * cell}}}};
   for (const double x : gauge_places) o.gauges.push_back({.name = fmt::format("at{:g}", x), .x = x, .y = 0.5 * width});
   return recorded(d, o, on, 5, 0.25);
 }

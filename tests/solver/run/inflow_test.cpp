@@ -45,12 +45,10 @@ struct Flume {
     options.end_time = 10;
   }
 
-  void let_in(std::vector<double> times, std::vector<double> discharges, double speed) {
+  void let_in(recipe::Pairs hydrograph, double speed) {
     InflowOptions inflow;
-    inflow.x = {8, 8};
-    inflow.y = {4, 8};
-    inflow.times = std::move(times);
-    inflow.discharges = std::move(discharges);
+    inflow.line = {{8, 4}, {8, 8}};
+    inflow.hydrograph = std::move(hydrograph);
     inflow.speed = speed;
     options.inflows = {inflow};
   }
@@ -95,7 +93,7 @@ TEST_P(InflowRun, keeps_the_volume_of_the_hydrograph_in_every_shape_precision_an
     SCOPED_TRACE(::testing::Message() << "integrator " << static_cast<int>(way.integrator) << ", shape "
                                       << name_of(way.shape) << ", precision " << static_cast<int>(way.precision));
     Flume flume(0.3, 30);
-    flume.let_in({0.5, 2, 3, 4, 5, 6}, {0, 20, 8, 0, 0, 10}, 4);
+    flume.let_in({{0.5, 0}, {2, 20}, {3, 8}, {4, 0}, {5, 0}, {6, 10}}, 4);
     SolveOptions& o = flume.options;
     o.integrator = way.integrator;
     o.shape = way.shape;
@@ -103,7 +101,7 @@ TEST_P(InflowRun, keeps_the_volume_of_the_hydrograph_in_every_shape_precision_an
     o.end_time = 9;
     o.base.law = FrictionLaw::coulomb;
     o.implicit.step = 0.05;
-    const Hydrograph hydrograph(o.inflows[0].times, o.inflows[0].discharges);
+    const Hydrograph hydrograph = read_hydrograph(o.inflows[0], "");
     RunLoop loop(drafted(flume.domain, o), make_device(GetParam()));
     loop.start();
     Watcher watcher(loop);
@@ -137,7 +135,7 @@ TEST_P(InflowRun, keeps_the_volume_of_the_hydrograph_in_every_shape_precision_an
 TEST_P(InflowRun, brings_the_momentum_that_was_stated) {
   // No gravity, no friction: what has entered goes on as it came.
   Flume flume;
-  flume.let_in({0, 4}, {16, 16}, 5);
+  flume.let_in({{0, 16}, {4, 16}}, 5);
   flume.options.gravity = {0, 0, 0};
   flume.options.base.law = FrictionLaw::none;
   flume.options.integrator = Integrator::explicit_;
@@ -174,10 +172,10 @@ TEST_P(InflowRun, takes_the_depth_and_speed_of_the_closed_form) {
   for (const double share : {0.6, 1.0, 1.5}) {
     Flume flume(0.3, 70);
     const SteadyFlow steady = steady_flow(flume, discharge);
-    flume.let_in({0, 100}, {discharge, discharge}, share * steady.speed);
+    flume.let_in({{0, discharge}, {100, discharge}}, share * steady.speed);
     SolveOptions& o = flume.options;
     o.end_time = 60;
-    o.sections = {{"near", {14.3, 14.3}, {0, 12}}, {"far", {90.7, 90.7}, {0, 12}}};
+    o.sections = {{"near", {{14.3, 0}, {14.3, 12}}}, {"far", {{90.7, 0}, {90.7, 12}}}};
     o.gauges = {{"far", 90, 6}};
     RunLoop loop(drafted(flume.domain, o), make_device(GetParam()));
     loop.start();
@@ -217,12 +215,12 @@ void expect_same_run(const RunLoop& a, const RunLoop& b) {
 TEST_P(InflowRun, goes_on_from_the_middle_of_the_hydrograph_bit_for_bit) {
   for (const Precision precision : {Precision::double_, Precision::single_}) {
     Flume flume(0.3, 40);
-    flume.let_in({0, 3, 8}, {6, 24, 0}, 5);
+    flume.let_in({{0, 6}, {3, 24}, {8, 0}}, 5);
     SolveOptions& o = flume.options;
     o.precision = precision;
     o.deterministic = true;
     o.end_time = 9;
-    o.sections = {{"near", {14.3, 14.3}, {0, 12}}};
+    o.sections = {{"near", {{14.3, 0}, {14.3, 12}}}};
     RunLoop unbroken(drafted(flume.domain, o), make_device(GetParam()));
     unbroken.start();
     Watcher watcher(unbroken, 4.0);
@@ -242,7 +240,7 @@ TEST_P(InflowRun, enters_beside_a_release_with_a_material_of_its_own) {
   Flume flume;
   flume.domain.release_names = {"slide"};
   fill(flume.domain, {40, 50, 4, 8, 0, 1});
-  flume.let_in({0, 4}, {16, 16}, 5);
+  flume.let_in({{0, 16}, {4, 16}}, 5);
   flume.options.end_time = 5;
   PartOptions part;
   part.release = "inflow-1";

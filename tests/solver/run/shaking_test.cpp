@@ -56,8 +56,7 @@ class ShakingGround : public InEachPlace {
     o.material.model = MaterialModel::hencky;
     o.material.youngs_modulus = 1e9;  // the closed form is that of a rigid block
     o.implicit.step = 0.01;
-    o.implicit.newmark_alpha = 0.5;
-    o.implicit.newmark_beta = 1;
+    o.implicit.newmark = {0.5, 1};
     o.gravity_loading_steps = 2;
     return o;
   }
@@ -146,8 +145,7 @@ TEST_P(ShakingGround, gives_a_free_mass_the_integral_of_the_record) {
       o.implicit.newton_tolerance = 1e-12;
       o.implicit.step = 0.017;
       if (!trapezoid) {
-        o.implicit.newmark_alpha = 0.5;
-        o.implicit.newmark_beta = 1;
+        o.implicit.newmark = {0.5, 1};
       }
       const FreeMass body(o, shaking, GetParam());
       for (const double time : {0.0215, 0.05, 0.2, 0.4}) {

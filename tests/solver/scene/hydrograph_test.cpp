@@ -46,8 +46,7 @@ TEST(Hydrograph, is_read_from_a_table_of_any_order_of_columns_and_scaled) {
   o.scale = 1.5;
   EXPECT_DOUBLE_EQ(read_hydrograph(o, "here").volume_until(20), 120);
   o.file.clear();
-  o.times = {0, 10};
-  o.discharges = {2, 2};
+  o.hydrograph = {{0, 2}, {10, 2}};
   EXPECT_DOUBLE_EQ(read_hydrograph(o, "here").volume_until(20), 30);
 }
 

@@ -19,8 +19,7 @@ TEST(InflowLine, has_strips_across_the_flow_and_the_slope_along_it) {
   const GridShape shape = grid_shape(d, {});
   const TerrainTables terrain = make_terrain_tables(shape);
   InflowOptions o;
-  o.x = {20, 36};
-  o.y = {40, 28};  // across the fall: along (4, -3), 20 m long
+  o.line = {{20, 40}, {36, 28}};  // across the fall: along (4, -3), 20 m long
   const InflowLine line = inflow_line(o, "here", d.grid, {shape, terrain});
   EXPECT_EQ(line.middles.size(), 20u) << "two in a cell";
   EXPECT_NEAR(line.ground.strip, 1, 1e-12);

@@ -30,10 +30,8 @@ SolveOptions with_inflow() {
   SolveOptions o;
   o.end_time = 100;
   InflowOptions inflow;
-  inflow.x = {20, 20};
-  inflow.y = {10, 50};
-  inflow.times = {5, 20, 50, 60, 70, 90};
-  inflow.discharges = {0, 30, 18, 0, 0, 12};
+  inflow.line = {{20, 10}, {20, 50}};
+  inflow.hydrograph = {{5, 0}, {20, 30}, {50, 18}, {60, 0}, {70, 0}, {90, 12}};
   inflow.speed = 4;
   o.inflows = {inflow};
   return o;
@@ -100,7 +98,7 @@ TEST(MakeInflow, lays_a_pulse_between_the_line_and_where_it_has_come_to) {
 TEST(MakeInflow, goes_downhill_whichever_way_the_line_is_drawn) {
   const Domain d = channel();
   SolveOptions o = with_inflow();
-  std::swap(o.inflows[0].y[0], o.inflows[0].y[1]);
+  std::swap(o.inflows[0].line[0], o.inflows[0].line[1]);
   for (const double v : inflow_of(d, o).points.velocity[0]) EXPECT_GT(v, 0);
   o.inflows[0].azimuth = 270;  // uphill, where that is said
   for (const double v : inflow_of(d, o).points.velocity[0]) EXPECT_LT(v, 0);
@@ -112,7 +110,7 @@ TEST(MakeInflow, numbers_its_points_after_those_of_the_scene_and_merges_inflows_
   fill(d, {60, 70, 26, 34, 0, 1});
   SolveOptions o = with_inflow();
   o.inflows.push_back(o.inflows[0]);
-  o.inflows[1].x = {40, 40};
+  o.inflows[1].line = {{40, 10}, {40, 50}};
   o.inflows[1].name = "side";
   const Scene scene = make_scene(d, o);
   EXPECT_EQ(scene.release_names, (std::vector<std::string>{"slide", "inflow-1", "side"}));
@@ -144,18 +142,26 @@ TEST(MakeInflow, refuses_what_cannot_be_with_numbers) {
     change(o.inflows[0]);
     return fault_of<Error>([&] { make_scene(d, o); });
   };
-  EXPECT_NE(fault([](InflowOptions& i) { i.x[0] = 500; }).find("(500, 10) lies outside the known ground"),
+  EXPECT_NE(fault([](InflowOptions& i) { i.line[0][0] = 500; }).find("(500, 10) lies outside the known ground"),
             std::string::npos);
-  EXPECT_NE(fault([](InflowOptions& i) { i.y[1] = 59.5; }).find("(20, 59.5)"), std::string::npos) << "on the rim";
-  EXPECT_NE(fault([](InflowOptions& i) { i.y = {29, 31}; }).find("m deep over 2 m of its line"), std::string::npos);
+  EXPECT_NE(fault([](InflowOptions& i) { i.line[1][1] = 59.5; }).find("(20, 59.5)"), std::string::npos) << "on the rim";
+  EXPECT_NE(fault([](InflowOptions& i) {
+              i.line = {{20, 29}, {20, 31}};
+            }).find("m deep over 2 m of its line"),
+            std::string::npos);
   EXPECT_NE(fault([](InflowOptions& i) { i.speed.reset(), i.depth = 0.02; }).find("no flow is faster than 100 m/s"),
             std::string::npos);
-  EXPECT_NE(fault([](InflowOptions& i) { i.discharges.assign(6, 0.0); }).find("all discharges are 0"),
+  EXPECT_NE(fault([](InflowOptions& i) {
+              i.hydrograph = {{0, 0}, {90, 0}};
+            }).find("all discharges are 0"),
             std::string::npos);
   EXPECT_NE(fault([](InflowOptions& i) { i.azimuth = 10; }).find("at 10 deg to the line"), std::string::npos);
-  EXPECT_NE(fault([](InflowOptions& i) { i.x = {118.5, 118.5}; }).find("outside the known ground"), std::string::npos);
   EXPECT_NE(fault([](InflowOptions& i) {
-              i.x = {117.9, 117.9};
+              i.line = {{118.5, 10}, {118.5, 50}};
+            }).find("outside the known ground"),
+            std::string::npos);
+  EXPECT_NE(fault([](InflowOptions& i) {
+              i.line = {{117.9, 10}, {117.9, 50}};
             }).find("below its line the known ground ends"),
             std::string::npos);
   Domain level = ground(30, 30, 2.0, 0.5, [](double, double) { return 7.0; });

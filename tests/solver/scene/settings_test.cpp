@@ -170,8 +170,7 @@ TEST(ImplicitControls, are_those_of_the_recipe) {
   SolveOptions o;
   o.integrator = Integrator::newmark;
   o.implicit = {.step = 0.03,
-                .newmark_alpha = 0.5,
-                .newmark_beta = 1,
+                .newmark = {0.5, 1},
                 .newton_tolerance = 1e-4,
                 .linear_solver = LinearSolver::cholesky,
                 .linear_tolerance = 1e-5,

@@ -138,7 +138,7 @@ TEST(GaugeChecks, refuse_every_place_without_terrain_around_it) {
   ASSERT_EQ(faults.size(), 2U);
   EXPECT_EQ(faults[0].what, "[[solve.gauge]] name = \"low\": (20, 0.4) lies outside the domain");
   EXPECT_EQ(faults[1].what, "[[solve.gauge]] name = \"far\": (47.6, 12) lies outside the domain");
-  EXPECT_EQ(faults[1].mend, "Choose x_m from 0.5 to 47.5 and y_m from 0.5 to 23.5, where the elevation model has data");
+  EXPECT_EQ(faults[1].mend, "Choose x from 0.5 to 47.5 and y from 0.5 to 23.5, where the elevation model has data");
   d.terrain.at(40, 3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(faults_of({{.name = "hole", .x = 40, .y = 3}}, d).size(), 1U);
 }

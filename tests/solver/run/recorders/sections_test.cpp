@@ -58,9 +58,9 @@ Sides sides_of(const Solver& solver, const Scene& scene, double width) {
 /// the change of the volume beyond, to what lies within half a cell of the line; to rounding where nothing does.
 TEST_P(Sections, pass_what_the_volumes_on_either_side_say) {
   SolveOptions o = block_without_friction();
-  o.sections = {{.name = "bent", .x = {22, 26.3, 15.2}, .y = {0.5, 11.7, 23.5}},
-                {.name = "back", .x = {15.2, 26.3, 22}, .y = {23.5, 11.7, 0.5}},
-                {.name = "straight", .x = {24, 24}, .y = {0.5, 23.5}}};
+  o.sections = {{.name = "bent", .line = {{22, 0.5}, {26.3, 11.7}, {15.2, 23.5}}},
+                {.name = "back", .line = {{15.2, 23.5}, {26.3, 11.7}, {22, 0.5}}},
+                {.name = "straight", .line = {{24, 0.5}, {24, 23.5}}}};
   Sides started;
   double integral = 0, between = 0;
   const RunHistory h = recorded(
@@ -94,7 +94,7 @@ TEST_P(Sections, know_the_discharge_of_a_steady_uniform_flow) {
   fill(d, {4, 34, 8, 12, 0, depth});
   SolveOptions o = block_without_friction();
   o.initial_velocity = {speed, 0, 0};
-  o.sections = {{.name = "across", .x = {39.25, 39.25}, .y = {20, 4}}};
+  o.sections = {{.name = "across", .line = {{39.25, 20}, {39.25, 4}}}};
   const RunHistory h = recorded(d, o, GetParam(), 4, 0.25);
   for (std::size_t row = 8; row < 16; ++row) {  // its front comes to the line after 0.9 s, its end after 5.9 s
     EXPECT_NEAR(column(h, "section_across_discharge_m3_s")[row], -speed * depth * width, 0.01 * speed * depth * width);
@@ -109,7 +109,7 @@ TEST_P(Sections, know_the_discharge_of_a_steady_uniform_flow) {
 TEST_P(Sections, go_on_after_a_restart_as_without) {
   SolveOptions o = block_without_friction();
   o.deterministic = true;  // two runs on a GPU are the same then
-  o.sections = {{.name = "line", .x = {22, 22}, .y = {0.5, 23.5}}};
+  o.sections = {{.name = "line", .line = {{22, 0.5}, {22, 23.5}}}};
   const Domain d = block_on_a_slope();
   const Scene scene = make_scene(d, o);
   const RunHistory whole = recorded(d, o, GetParam(), 2.5, 0.25);
@@ -137,7 +137,7 @@ TEST_P(Sections, go_on_after_a_restart_as_without) {
 
 TEST_P(Sections, say_what_may_have_left_unseen) {
   SolveOptions o = block_without_friction();
-  o.sections = {{.name = "edge", .x = {62, 62}, .y = {0.5, 23.5}}, {.name = "far", .x = {30, 30}, .y = {0.5, 23.5}}};
+  o.sections = {{.name = "edge", .line = {{62, 0.5}, {62, 23.5}}}, {.name = "far", .line = {{30, 0.5}, {30, 23.5}}}};
   std::vector<std::string> warnings;
   const RunHistory h = recorded(
       block_on_a_slope(), o, GetParam(), 6, 1,
@@ -156,30 +156,28 @@ TALUS_IN_EACH_PLACE(Sections);
 TEST(SectionChecks, refuse_what_lies_beyond_the_domain) {
   SolveOptions o;
   const Domain d = block_on_a_slope();
-  o.sections = {{.name = "in", .x = {0.5, 63.5}, .y = {0.5, 23.5}}, {.name = "out", .x = {2, 64}, .y = {2, 3}}};
+  o.sections = {{.name = "in", .line = {{0.5, 0.5}, {63.5, 23.5}}}, {.name = "out", .line = {{2, 2}, {64, 3}}}};
   try {
     const SectionRecorder recorder(o, make_scene(d, o));
     FAIL();
   } catch (const RecipeError& error) {
     ASSERT_EQ(error.faults().size(), 1U);
     EXPECT_EQ(error.faults()[0].what, "[[solve.section]] name = \"out\": (64, 3) lies outside the domain");
-    EXPECT_EQ(error.faults()[0].mend, "Choose x_m from 0.5 to 63.5 and y_m from 0.5 to 23.5");
+    EXPECT_EQ(error.faults()[0].mend, "Choose x from 0.5 to 63.5 and y from 0.5 to 23.5");
   }
 }
 
 TEST(SectionChecks, refuse_lines_that_are_none) {
   SolveOptions o;
-  o.sections = {{.name = "dot", .x = {1}, .y = {1}},
-                {.name = "odd", .x = {1, 2}, .y = {1}},
-                {.name = "twice", .x = {1, 1, 2}, .y = {1, 1, 2}},
-                {.name = "twice", .x = {1, 2}, .y = {1, 2}}};
+  o.sections = {{.name = "dot", .line = {{1, 1}}},
+                {.name = "twice", .line = {{1, 1}, {1, 1}, {2, 2}}},
+                {.name = "twice", .line = {{1, 1}, {2, 2}}}};
   std::vector<Fault> faults;
   recipe::find_unmet(o, faults);
-  ASSERT_EQ(faults.size(), 4U);
-  EXPECT_EQ(faults[0].what, "[[solve.section]] name = \"dot\" has 1 values of x_m and 1 of y_m");
-  EXPECT_EQ(faults[1].what, "[[solve.section]] name = \"odd\" has 2 values of x_m and 1 of y_m");
-  EXPECT_EQ(faults[2].what, "[[solve.section]] name = \"twice\" gives a point twice, one after the other");
-  EXPECT_EQ(faults[3].what, "[[solve.section]] name = \"twice\" is given twice");
+  ASSERT_EQ(faults.size(), 3U);
+  EXPECT_EQ(faults[0].what, "[[solve.section]] name = \"dot\": line_m has 1 points");
+  EXPECT_EQ(faults[1].what, "[[solve.section]] name = \"twice\" gives a point twice, one after the other");
+  EXPECT_EQ(faults[2].what, "[[solve.section]] name = \"twice\" is given twice");
 }
 
 }  // namespace
