@@ -129,7 +129,7 @@ class InProcessTest(unittest.TestCase):
         def kinetic(base):
             return talus.run(talus.plan(short(base=base), plane()), on="cpu").history["kinetic_J"][-1]
         def table(*coefficients):
-            return {"law": "table", "table": [list(row) for row in zip([0.0, 0.5, 2.0], coefficients)]}
+            return {"law": "table", "table": list(zip([0.0, 0.5, 2.0], coefficients))}
         self.assertEqual(kinetic(table(mu, mu, mu)), kinetic({}))
         self.assertGreater(kinetic(table(mu, 0.1, 0.05)), 1.1 * kinetic({}))
 
