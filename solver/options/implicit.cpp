@@ -66,7 +66,10 @@ void ImplicitOptions::describe_linear(recipe::Visitor& v, const SolveOptions& al
 NewtonScheme scheme_of(const SolveOptions& o) {
   NewtonScheme scheme;
   if (o.integrator == Integrator::newmark && o.material.stiffness_is_free()) scheme = {0.5, 1, 1e-2};
-  if (const auto& given = o.implicit.newmark; !given.empty()) scheme.alpha = given[0], scheme.beta = given[1];
+  if (const std::vector<double>& given = o.implicit.newmark; !given.empty()) {
+    scheme.alpha = given[0];
+    scheme.beta = given[1];
+  }
   scheme.tolerance = o.implicit.newton_tolerance.value_or(scheme.tolerance);
   return scheme;
 }
