@@ -13,6 +13,7 @@
 #include "common/ensemble/slide_options.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"
+#include "common/recipe/vector_source.hpp"
 #include "common/run/run_facts.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
@@ -133,7 +134,7 @@ void warn_of_other_title(const StageContext& context, const RunSummary& run) {
 std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
-  if (job.thalweg.given) inputs.push_back(job.options.thalweg);
+  if (job.thalweg.given) inputs.push_back(vector_source(job.options.thalweg).file);
   for (const fs::path& polygons : hazard_inputs(job.options)) inputs.push_back(polygons);
   return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
                      {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});

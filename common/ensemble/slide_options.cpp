@@ -22,15 +22,15 @@ void SlideKeyOptions::describe(recipe::Visitor& v) {
 
 void ScenarioOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "name of the slide");
-  v.path("outline", outline, "vector file of its polygons; empty = outlines of [slides]");
-  v.text("layer", layer, "layer of that file; empty = the first");
-  v.text("where", where, "which polygons of it, by attributes: \"id = 12\"; empty = all");
+  v.path("outline", outline, "vector file of its polygons: FILE|layername=LAYER|subset=CONDITION");
   v.number("thickness_m", thickness, recipe::not_negative, "released thickness (with base_dem); 0 = not given");
   v.number("depth_m", depth, recipe::not_negative,
            "largest depth of the sliding surface (with before_dem); 0 = not given");
   v.number("volume_m3", volume, recipe::not_negative, "released volume; 0 = not given");
   v.names("set", set, {}, "values of other keys, \"key=value\" each: \"solve.base.friction_angle_deg=18\"");
   const std::string shown = name.empty() ? "[[slides.scenario]]" : "[[slides.scenario]] " + name;
+  v.needs(!outline.empty(), {shown + " has no outline", "its polygons are not known",
+                             "Give outline = \"FILE|layername=LAYER|subset=CONDITION\""});
   v.needs(!name.empty(), {"[[slides.scenario]] without a name", "results are told apart by name", "Name it"});
   v.needs((thickness > 0) + (depth > 0) + (volume > 0) <= 1,
           {shown + ": more than one of thickness_m, depth_m and volume_m3", "each says by itself how much is released",
@@ -39,9 +39,7 @@ void ScenarioOptions::describe(recipe::Visitor& v) {
 
 void SlideOptions::describe(recipe::Visitor& v) {
   v.path("outlines", outlines,
-         "vector file of polygons over the model of [preprocess]: each a slide, or those that scenarios list");
-  v.text("layer", layer, "layer of that file; empty = the first");
-  v.text("where", where, "which polygons of it are slides, by attributes: \"active = 1\"; empty = all");
+         "vector file of polygons over the model of [preprocess], each a slide: FILE|layername=LAYER|subset=CONDITION");
   v.text("name_from", name_from, "attribute that holds their names; empty = slide-1, slide-2 and so on by feature id");
   v.text("thickness_from", thickness_from, "attribute that holds the released thickness [m] (with base_dem)");
   v.text("depth_from", depth_from,
@@ -66,10 +64,11 @@ void SlideOptions::check(std::vector<Fault>& faults) const {
   if (!thickness_from.empty() + !depth_from.empty() + !volume_from.empty() > 1)
     faults.push_back({"[slides]: more than one of thickness_from, depth_from and volume_from",
                       "each says by itself how much is released", "Leave the others out"});
-  const bool by_attributes = !(name_from + thickness_from + depth_from + volume_from + where).empty() || !vary.empty();
-  if (!scenario.empty() && by_attributes)
-    faults.push_back({"[slides]: attributes beside [[slides.scenario]]",
-                      "a recipe that lists slides gives their names and values itself",
+  const bool by_layer =
+      !(outlines.string() + name_from + thickness_from + depth_from + volume_from).empty() || !vary.empty();
+  if (!scenario.empty() && by_layer)
+    faults.push_back({"[slides]: outlines or attributes beside [[slides.scenario]]",
+                      "a recipe that lists slides gives their outlines, names and values itself",
                       "Give these in [[slides.scenario]], or leave that out and have every polygon a slide"});
   std::set<std::string> keys, names;
   for (const SlideKeyOptions& one : vary)
@@ -80,9 +79,6 @@ void SlideOptions::check(std::vector<Fault>& faults) const {
     if (!names.insert(one.name).second)
       faults.push_back({fmt::format("[[slides.scenario]]: name \"{}\" is taken", one.name),
                         "results are told apart by name", "Name it otherwise"});
-    if (one.outline.empty() && outlines.empty())
-      faults.push_back({fmt::format("[[slides.scenario]] {} has no outline", one.name),
-                        "neither outline nor outlines of [slides] is given", "Give one of them"});
   }
 }
 

@@ -24,8 +24,7 @@ struct SlideKeyOptions {
 /// A slide that the recipe itself lists.
 struct ScenarioOptions {
   std::string name;
-  std::filesystem::path outline;  ///< its polygons; empty: those of `outlines` that meet `where`
-  std::string layer, where;
+  std::filesystem::path outline;                ///< its polygons, a vector source
   double thickness = 0, depth = 0, volume = 0;  ///< [m], [m], [m3]; 0: not given
   std::vector<std::string> set;                 ///< "key=value" of the recipe
   void describe(recipe::Visitor& v);
@@ -36,9 +35,7 @@ enum class SlideAtEdge { flag, fail };
 
 /// The keys of [slides].
 struct SlideOptions : MemberRunOptions {
-  std::filesystem::path outlines;  ///< a layer of polygons, a slide each; or those that `scenario` lists
-  std::string layer;               ///< of that file; empty: the first
-  std::string where;               ///< which polygons of it; empty: all
+  std::filesystem::path outlines;  ///< a vector source of polygons, a slide each
   std::string name_from;           ///< attributes; empty: not given
   std::string thickness_from, depth_from, volume_from;
   std::optional<double> margin;  ///< around the outline [m]

@@ -9,6 +9,7 @@
 
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
+#include "common/recipe/vector_source.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -58,7 +59,8 @@ std::vector<fs::path> with_sidecars(const std::vector<fs::path>& files) {
   const auto add = [&](const fs::path& file) {
     if (is_plain(file) && std::find(all.begin(), all.end(), file) == all.end()) all.push_back(file);
   };
-  for (const fs::path& file : files) {
+  for (const fs::path& source : files) {
+    const fs::path file = vector_source(source).file;
     add(file);
     std::vector<fs::path> parts = files_of_dataset(file);
     if (is_plain(file)) add_projection(file, parts);

@@ -17,12 +17,12 @@ struct TextField {
   std::string field, text;
 };
 
-/// The fields of a vector file's first layer, in their order. Throws DataError when the file cannot be read.
-std::vector<std::string> field_names(const std::filesystem::path& file);
+/// The fields of a vector source, in their order. Throws DataError when it cannot be read.
+std::vector<std::string> field_names(const std::filesystem::path& source);
 
 /// The attributes whose names `wanted` takes for numbers, and which are set to something else. Throws DataError when
-/// the file cannot be read.
-std::vector<TextField> text_fields(const std::filesystem::path& file,
+/// the source cannot be read.
+std::vector<TextField> text_fields(const std::filesystem::path& source,
                                    const std::function<bool(std::string_view)>& wanted);
 
 }  // namespace talus

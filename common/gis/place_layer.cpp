@@ -3,15 +3,12 @@
 #include "common/gis/place_layer.hpp"
 
 #include <fmt/format.h>
-#include <ogrsf_frmts.h>
 
 #include <cmath>
 #include <memory>
 #include <optional>
 
-#include "common/gis/gdal_support.hpp"
 #include "common/gis/vector_layer.hpp"
-#include "common/stage/crash_report.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -22,7 +19,7 @@ struct NoPlace {
   std::string what, why, mend;
 };
 
-constexpr auto leave_it_out = "leave it out by where = \"...\"";
+constexpr auto leave_it_out = "leave it out by a condition (FILE|subset=CONDITION)";
 
 /// The points of a line, none repeated.
 MapLine points_of(const OGRLineString& line) {
@@ -63,25 +60,12 @@ std::optional<NoPlace> set_points(const fs::path& file, const OGRGeometry* shape
   return std::nullopt;
 }
 
-std::optional<NoPlace> take_feature(const fs::path& file, const OGRFeature& feature,
-                                    OGRCoordinateTransformation* transform, const gdal::QuietErrors& errors,
-                                    MapLine& points) {
-  const OGRGeometry* geometry = feature.GetGeometryRef();
-  if (geometry == nullptr) return set_points(file, nullptr, points);
-  const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
-  gdal::carry(file, transform, *shape, errors);
-  return set_points(file, shape.get(), points);
-}
-
 }  // namespace
 
-PlaceLayer read_place_layer(const fs::path& file, const std::string& crs_wkt, const LayerChoice& choice) {
-  const WhileReading while_reading(file, "Copy or download it again");
-  const gdal::QuietErrors errors;
-  const gdal::Dataset dataset = gdal::open_vector(file);
-  OGRLayer& layer = gdal::layer_named(*dataset, file, choice.layer);
-  gdal::choose_features(layer, file, choice.where, errors);
-  const gdal::Transformation transform = gdal::transformation_to(layer, crs_wkt);
+PlaceLayer read_place_layer(const fs::path& source, const std::string& crs_wkt) {
+  const gdal::VectorLayer from(source, crs_wkt);
+  OGRLayer& layer = from.layer();
+  const std::string file = from.file().string();
   PlaceLayer found{.name = layer.GetName(), .crs_wkt = {}, .fields = {}, .features = {}};
   if (const OGRSpatialReference* own = layer.GetSpatialRef();
       own != nullptr && !own->IsEmpty() && own->IsLocal() == 0)  // local coordinates are anybody's
@@ -90,21 +74,18 @@ PlaceLayer read_place_layer(const fs::path& file, const std::string& crs_wkt, co
   for (int i = 0; i < fields.GetFieldCount(); ++i) found.fields.emplace_back(fields.GetFieldDefn(i)->GetNameRef());
   std::vector<Fault> faults;
   for (const auto& feature : layer) {
-    PlaceFeature one{.place = fmt::format("{}, feature {}", file.string(), feature->GetFID()),
+    PlaceFeature one{.place = fmt::format("{}, feature {}", file, feature->GetFID()),
                      .number = feature->GetFID(),
                      .points = {},
                      .values = gdal::values_of(*feature)};
-    if (const auto fault = take_feature(file, *feature, transform.get(), errors, one.points))
+    if (const auto fault = set_points(file, from.shape_of(*feature).get(), one.points))
       faults.push_back({one.place + ": " + fault->what, fault->why, fault->mend});
     else
       found.features.push_back(std::move(one));
   }
-  gdal::require_whole(file, errors);
+  from.require_whole();
   if (faults.empty() && found.features.empty())
-    faults.push_back(
-        {fmt::format("{}: no feature in layer \"{}\"{}", file.string(), found.name, gdal::condition_words(choice)),
-         choice.where.empty() ? "the layer is empty" : "none meets it",
-         "Draw lines or points there, or choose others by layer and where"});
+    faults.push_back(from.none_found("feature", "", "Draw lines or points there, or choose others"));
   if (!faults.empty()) throw DataError(std::move(faults));
   return found;
 }

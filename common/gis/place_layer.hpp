@@ -28,10 +28,9 @@ struct PlaceLayer {
   std::vector<PlaceFeature> features;
 };
 
-/// The lines and points of a layer, transformed to `crs_wkt` when both have a CRS. Throws DataError, which names every
-/// feature at fault: no such file, not a vector file, no layer of the name, a condition that cannot be understood, no
-/// feature, a feature that has no shape, several parts, or another shape than a line or a point.
-PlaceLayer read_place_layer(const std::filesystem::path& file, const std::string& crs_wkt,
-                            const LayerChoice& choice = {});
+/// The lines and points of a vector source, transformed to `crs_wkt` when both have a CRS. Throws DataError, which
+/// names every feature at fault: no such file, not a vector file, no layer of the name, a condition that cannot be
+/// understood, no feature, a feature that has no shape, several parts, or another shape than a line or a point.
+PlaceLayer read_place_layer(const std::filesystem::path& source, const std::string& crs_wkt);
 
 }  // namespace talus

@@ -3,13 +3,10 @@
 #include "common/gis/polygons.hpp"
 
 #include <fmt/format.h>
-#include <ogrsf_frmts.h>
 
 #include <cmath>
 
-#include "common/gis/gdal_support.hpp"
 #include "common/gis/vector_layer.hpp"
-#include "common/stage/crash_report.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -56,15 +53,13 @@ MapPolygon attributes_of(const OGRFeature& feature) {
 }
 
 struct Reading {
-  const fs::path& file;
+  const gdal::VectorLayer& from;
   std::vector<MapPolygon> polygons{};
 
   /// The polygons of a feature, in other coordinates; the name of its shape, empty where it has none.
-  std::string add(const OGRFeature& feature, OGRCoordinateTransformation* transform, const gdal::QuietErrors& errors) {
-    const OGRGeometry* geometry = feature.GetGeometryRef();
-    if (geometry == nullptr) return "";
-    const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
-    gdal::carry(file, transform, *shape, errors);
+  std::string add(const OGRFeature& feature) {
+    const std::unique_ptr<OGRGeometry> shape = from.shape_of(feature);
+    if (shape == nullptr) return "";
     add(feature, *shape);
     return shape->getGeometryName();
   }
@@ -77,7 +72,7 @@ struct Reading {
     }
     if (flat != wkbPolygon) return;
     MapPolygon polygon = attributes_of(feature);
-    polygon.rings = rings_of(*shape.toPolygon(), file);
+    polygon.rings = rings_of(*shape.toPolygon(), from.file());
     if (!polygon.rings.empty()) polygons.push_back(std::move(polygon));
   }
 };
@@ -102,74 +97,53 @@ void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLi
 
 }  // namespace
 
-std::vector<MapPolygon> read_polygons(const fs::path& file, const std::string& crs_wkt, const LayerChoice& choice) {
-  const WhileReading while_reading(file, "Copy or download it again");
-  const gdal::QuietErrors errors;
-  const gdal::Dataset dataset = gdal::open_vector(file);
-  OGRLayer* found = choice.layer.empty() ? nullptr : dataset->GetLayerByName(choice.layer.c_str());
-  OGRLayer& layer = found == nullptr ? *dataset->GetLayer(0) : *found;
-  gdal::choose_features(layer, file, choice.where, errors);
-  const gdal::Transformation transform = gdal::transformation_to(layer, crs_wkt);
-  Reading reading{file};
+std::vector<MapPolygon> read_polygons(const fs::path& source, const std::string& crs_wkt, const std::string& usual) {
+  const gdal::VectorLayer from(source, crs_wkt, usual);
+  Reading reading{from};
   std::string other;
-  for (const auto& feature : layer) {
+  for (const auto& feature : from.layer()) {
     const std::size_t before = reading.polygons.size();
-    const std::string shape = reading.add(*feature, transform.get(), errors);
+    const std::string shape = reading.add(*feature);
     if (reading.polygons.size() == before && !shape.empty()) other = shape;
   }
-  gdal::require_whole(file, errors);
+  from.require_whole();
   if (reading.polygons.empty())
-    throw DataError({file.string() + ": no polygon in its first layer" + gdal::condition_words(choice),
-                     other.empty() ? "the layer is empty" : "it holds " + other,
-                     "Draw the outline as a polygon, or put that layer first"});
+    throw DataError(from.none_found("polygon", other, "Draw the outline as a polygon, or name another layer"));
   return reading.polygons;
 }
 
-std::vector<PolygonFeature> read_polygon_features(const fs::path& file, const std::string& crs_wkt,
-                                                  const LayerChoice& choice) {
-  const WhileReading while_reading(file, "Copy or download it again");
-  const gdal::QuietErrors errors;
-  const gdal::Dataset dataset = gdal::open_vector(file);
-  OGRLayer& named = gdal::layer_named(*dataset, file, choice.layer);
-  gdal::choose_features(named, file, choice.where, errors);
-  const gdal::Transformation transform = gdal::transformation_to(named, crs_wkt);
-  const std::string id = named.GetFIDColumn();
+std::vector<PolygonFeature> read_polygon_features(const fs::path& source, const std::string& crs_wkt) {
+  const gdal::VectorLayer from(source, crs_wkt);
+  const std::string file = from.file().string(), id = from.layer().GetFIDColumn();
   std::vector<PolygonFeature> features;
-  for (const auto& feature : named) {
-    Reading reading{file};
-    reading.add(*feature, transform.get(), errors);
-    features.push_back({.where = fmt::format("{} = {}", id.empty() ? "FID" : '"' + id + '"', feature->GetFID()),
-                        .place = fmt::format("{}, feature {}", file.string(), feature->GetFID()),
+  for (const auto& feature : from.layer()) {
+    Reading reading{from};
+    reading.add(*feature);
+    const std::string where = fmt::format("{} = {}", id.empty() ? "FID" : '"' + id + '"', feature->GetFID());
+    features.push_back({.source = VectorSource{from.file(), from.layer().GetName(), where}.text(),
+                        .place = fmt::format("{}, feature {}", file, feature->GetFID()),
                         .number = feature->GetFID(),
                         .polygons = std::move(reading.polygons),
                         .values = gdal::values_of(*feature)});
   }
-  gdal::require_whole(file, errors);
+  from.require_whole();
   return features;
 }
 
-std::vector<MapLine> read_lines(const fs::path& file, const std::string& crs_wkt) {
-  const WhileReading while_reading(file, "Copy or download it again");
-  const gdal::QuietErrors errors;
-  const gdal::Dataset dataset = gdal::open_vector(file);
-  OGRLayer& layer = *dataset->GetLayer(0);
-  const gdal::Transformation transform = gdal::transformation_to(layer, crs_wkt);
+std::vector<MapLine> read_lines(const fs::path& source, const std::string& crs_wkt) {
+  const gdal::VectorLayer from(source, crs_wkt);
   std::vector<MapLine> lines;
   std::string other;
-  for (const auto& feature : layer) {
-    const OGRGeometry* geometry = feature->GetGeometryRef();
-    if (geometry == nullptr) continue;
-    const std::unique_ptr<OGRGeometry> shape(geometry->getLinearGeometry());  // arcs become short chords
+  for (const auto& feature : from.layer()) {
+    const std::unique_ptr<OGRGeometry> shape = from.shape_of(*feature);
+    if (shape == nullptr) continue;
     const std::size_t before = lines.size();
-    gdal::carry(file, transform.get(), *shape, errors);
-    add_lines(*shape, file, lines);
+    add_lines(*shape, from.file(), lines);
     if (lines.size() == before) other = shape->getGeometryName();
   }
-  gdal::require_whole(file, errors);
+  from.require_whole();
   if (lines.empty())
-    throw DataError({file.string() + ": no line in its first layer",
-                     other.empty() ? "the layer is empty" : "it holds " + other,
-                     "Draw a line from the crown downwards, or put that layer first"});
+    throw DataError(from.none_found("line", other, "Draw a line from the crown downwards, or name another layer"));
   return lines;
 }
 

@@ -4,18 +4,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <ogrsf_frmts.h>
 
-#include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
-#include "common/stage/crash_report.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
+namespace {
 
 Dataset open_vector(const fs::path& file) {
   require_local(file);
-  const WhileReading reading(file, "Copy or download it again");
   const QuietErrors errors;
   Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (dataset && dataset->GetLayerCount() > 0) return dataset;
@@ -26,26 +23,18 @@ Dataset open_vector(const fs::path& file) {
                    "Look at it: ogrinfo " + file.string()});
 }
 
-OGRLayer& layer_named(GDALDataset& dataset, const fs::path& file, const std::string& name) {
-  if (name.empty()) return *dataset.GetLayer(0);
-  if (OGRLayer* named = dataset.GetLayerByName(name.c_str())) return *named;
+/// The layer that a source names; where it names none, that called `usual` if there is one, else the first.
+OGRLayer* layer_of(GDALDataset& dataset, const VectorSource& source, const std::string& usual) {
+  const std::string& name = source.layer.empty() ? usual : source.layer;
+  if (OGRLayer* named = name.empty() ? nullptr : dataset.GetLayerByName(name.c_str())) return named;
+  if (source.layer.empty()) return dataset.GetLayer(0);
   std::vector<std::string> there;
   for (auto* layer : dataset.GetLayers()) there.emplace_back(layer->GetName());
-  throw DataError({fmt::format("{}: no layer \"{}\" in it", file.string(), name),
+  throw DataError({fmt::format("{}: no layer \"{}\" in it", source.file.string(), name),
                    fmt::format("it has {}", fmt::join(there, ", ")), "Name one that is there"});
 }
 
-void choose_features(OGRLayer& layer, const fs::path& file, const std::string& where, const QuietErrors& errors) {
-  if (where.empty()) return;
-  if (layer.SetAttributeFilter(where.c_str()) == OGRERR_NONE && !errors.failed()) return;
-  throw DataError({fmt::format("{}: the condition {} cannot be understood", file.string(), where), errors.text(),
-                   "Write it with the names of attributes: id = 12, or state = 'active'; ogrinfo -so lists them"});
-}
-
-std::string condition_words(const LayerChoice& choice) {
-  return choice.where.empty() ? "" : fmt::format(" whose attributes meet {}", choice.where);
-}
-
+/// The way from a layer's CRS to another; none where one of them is not named.
 Transformation transformation_to(OGRLayer& layer, const std::string& crs_wkt) {
   const OGRSpatialReference* own = layer.GetSpatialRef();
   if (crs_wkt.empty() || own == nullptr || own->IsEmpty() || own->IsLocal() != 0) return nullptr;
@@ -54,19 +43,40 @@ Transformation transformation_to(OGRLayer& layer, const std::string& crs_wkt) {
   return transformation(from, spatial_reference(crs_wkt));
 }
 
-void carry(const fs::path& file, OGRCoordinateTransformation* transform, OGRGeometry& shape,
-           const QuietErrors& errors) {
-  if (transform == nullptr || shape.transform(transform) == OGRERR_NONE) return;
-  const char* what = wkbFlatten(shape.getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
-  throw DataError(
-      {fmt::format("{}: {} cannot be brought to the working CRS", file.string(), what), errors.text(),
-       "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " + file.string()});
+}  // namespace
+
+VectorLayer::VectorLayer(const fs::path& text, const std::string& crs_wkt, const std::string& usual)
+    : source_(vector_source(text)),
+      while_reading_(file(), "Copy or download it again"),
+      dataset_(open_vector(file())),
+      layer_(layer_of(*dataset_, source_, usual)) {
+  if (!where().empty() && (layer_->SetAttributeFilter(where().c_str()) != OGRERR_NONE || errors_.failed()))
+    throw DataError({fmt::format("{}: the condition {} cannot be understood", file().string(), where()), errors_.text(),
+                     "Write it with the names of attributes: id = 12, or state = 'active'; ogrinfo -so lists them"});
+  transformation_ = transformation_to(*layer_, crs_wkt);
 }
 
-void require_whole(const fs::path& file, const QuietErrors& errors) {
-  if (errors.failed())
-    throw DataError(
-        {file.string() + ": cannot be read to its end", errors.text(), "Look at it: ogrinfo -al " + file.string()});
+std::unique_ptr<OGRGeometry> VectorLayer::shape_of(const OGRFeature& feature) const {
+  if (feature.GetGeometryRef() == nullptr) return nullptr;
+  std::unique_ptr<OGRGeometry> shape(feature.GetGeometryRef()->getLinearGeometry());  // arcs become short chords
+  if (transformation_ == nullptr || shape->transform(transformation_.get()) == OGRERR_NONE) return shape;
+  const char* what = wkbFlatten(shape->getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
+  throw DataError({fmt::format("{}: {} cannot be brought to the working CRS", file().string(), what), errors_.text(),
+                   "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " +
+                       file().string()});
+}
+
+void VectorLayer::require_whole() const {
+  if (errors_.failed())
+    throw DataError({file().string() + ": cannot be read to its end", errors_.text(),
+                     "Look at it: ogrinfo -al " + file().string()});
+}
+
+Fault VectorLayer::none_found(const std::string& what, const std::string& other, const std::string& mend) const {
+  const char* nothing = where().empty() ? "the layer is empty" : "none meets it";
+  return {fmt::format("{}: no {} in layer \"{}\"{}", file().string(), what, layer_->GetName(),
+                      where().empty() ? "" : " whose attributes meet " + where()),
+          other.empty() ? nothing : "it holds " + other, mend + " (FILE|layername=LAYER|subset=CONDITION)"};
 }
 
 bool is_numeric(const OGRFeature& feature, int field) {

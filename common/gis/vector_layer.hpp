@@ -9,45 +9,40 @@
 #include <string>
 #include <vector>
 
-#include "common/gis/polygons.hpp"
+#include <ogrsf_frmts.h>
 
-class GDALDataset;
-class OGRCoordinateTransformation;
-class OGRFeature;
-class OGRGeometry;
-class OGRLayer;
+#include "common/gis/gdal_support.hpp"
+#include "common/gis/polygons.hpp"
+#include "common/stage/crash_report.hpp"
 
 namespace talus::gdal {
 
-class QuietErrors;  // of gdal_support.hpp, which sources include
-struct CloseDataset;
-struct DestroyTransformation;
-using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
-using Transformation = std::unique_ptr<OGRCoordinateTransformation, DestroyTransformation>;
+/// A layer while it is read: the features of a source, and the way to another CRS.
+class VectorLayer {
+ public:
+  /// Opens a source. Where it names no layer, that called `usual` is taken if there is one, else the first. Throws
+  /// DataError: no such file, not a vector file, no layer of the name, a condition that cannot be understood.
+  VectorLayer(const std::filesystem::path& text, const std::string& crs_wkt, const std::string& usual = {});
 
-/// A vector file with a layer at least. Throws DataError.
-Dataset open_vector(const std::filesystem::path& file);
+  /// Its features that meet the condition.
+  OGRLayer& layer() const { return *layer_; }
+  const std::filesystem::path& file() const { return source_.file; }
+  const std::string& where() const { return source_.where; }
+  /// A shape as chords, carried to the other CRS; none: the feature has none. Throws DataError.
+  std::unique_ptr<OGRGeometry> shape_of(const OGRFeature& feature) const;
+  /// Throws DataError where a call has failed on the way.
+  void require_whole() const;
+  /// The fault that there is no `what`, but some `other` (empty: nothing).
+  Fault none_found(const std::string& what, const std::string& other, const std::string& mend) const;
 
-/// The layer of a name, the first where that is empty. Throws DataError where there is none of that name.
-OGRLayer& layer_named(GDALDataset& dataset, const std::filesystem::path& file, const std::string& name);
-
-/// Only those features whose attributes meet a condition are read from now on. Throws DataError where it cannot be
-/// understood.
-void choose_features(OGRLayer& layer, const std::filesystem::path& file, const std::string& where,
-                     const QuietErrors& errors);
-
-/// "layer whose attributes meet CONDITION", for messages; empty where there is no condition.
-std::string condition_words(const LayerChoice& choice);
-
-/// The way from a layer's CRS to another; none where one of them is not named.
-Transformation transformation_to(OGRLayer& layer, const std::string& crs_wkt);
-
-/// Carries a shape along; none: it stays. Throws DataError.
-void carry(const std::filesystem::path& file, OGRCoordinateTransformation* transform, OGRGeometry& shape,
-           const QuietErrors& errors);
-
-/// Throws DataError where a call has failed on the way.
-void require_whole(const std::filesystem::path& file, const QuietErrors& errors);
+ private:
+  VectorSource source_;
+  WhileReading while_reading_;
+  QuietErrors errors_;
+  Dataset dataset_;
+  OGRLayer* layer_ = nullptr;
+  Transformation transformation_;  ///< none: shapes stay where they are
+};
 
 /// Text that is a number as a whole counts as one.
 bool is_numeric(const OGRFeature& feature, int field);

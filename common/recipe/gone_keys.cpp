@@ -15,6 +15,9 @@ struct GoneKeys {
   std::string_view advice;  ///< what to do instead, an imperative without a full stop
 };
 
+constexpr std::string_view behind_the_file =
+    "Write it behind the name of the file, as QGIS shows it: \"FILE|layername=LAYER|subset=CONDITION\"";
+
 constexpr GoneKeys gone_keys[] = {
     {"budget",
      "Give its keys in [ensemble.budget], with design = \"budget\" in [ensemble]; seed and elevation_error are "
@@ -50,8 +53,9 @@ constexpr GoneKeys gone_keys[] = {
      "Draw the deposit (polygon), or take accept = [\"change-outside-slide\"] in [postprocess]"},
     {"preprocess.difference.before_sigma_m after_sigma_m", "Give sigma_m, the root of the sum of both models' squares"},
     {"preprocess.difference.threshold", "Give confidence: 0.6827 for the error itself, and minimum_level_m"},
-    {"preprocess.erodible.attribute direction layer where",
+    {"preprocess.erodible.attribute direction",
      "Give the layer as polygons with an attribute \"thickness\", vertical, or as a raster"},
+    {"preprocess.erodible.layer where", behind_the_file},
     {"preprocess.erodible.volume_factor grow_m", "Change the thickness or the polygons of the layer"},
     {"preprocess.grid.minimum_thickness_m", "Leave it out; fewer points_per_cell make thin columns cheap"},
     {"preprocess.grid.west_m south_m east_m north_m", "Give extent_m = [west, south, east, north]"},
@@ -60,9 +64,14 @@ constexpr GoneKeys gone_keys[] = {
     {"preprocess.laboratory.west_m south_m ground_m", "Give corner_m = [west, south, ground]"},
     {"preprocess.obstacle.voxel_m",
      "Leave it out; voxels are a quarter of the smaller of spacing_m and layer_height_m"},
+    {"preprocess.place.layer where", behind_the_file},
+    {"preprocess.release.layer where", behind_the_file},
+    {"preprocess.source.layer where", behind_the_file},
     {"preprocess.source.seed_x_m seed_y_m", "Give seed_m = [easting, northing]"},
     {"preprocess.source.sliding_surface.depth_points_hold", "Name the column of depths \"depth\"; z is an elevation"},
     {"preprocess.voids.fill largest_m2", "Give fill_m2, the largest area that is filled, such as 1e5"},
+    {"slides.layer where", behind_the_file},
+    {"slides.scenario.layer where", behind_the_file},
     {"solve.flip_fraction", "Give transfer_time_s, the time over which velocity finer than the grid decays"},
     {"solve.ground_contact", "Leave it out; mapping = \"terrain-following\" meets steep ground where it is"},
     {"solve.kappa", "Leave it out; it is 0.3, and below 0.25 steps are unstable"},

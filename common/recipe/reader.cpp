@@ -11,6 +11,7 @@
 #include "common/recipe/shown_paths.hpp"
 #include "common/recipe/suggest.hpp"
 #include "common/recipe/values.hpp"
+#include "common/recipe/vector_source.hpp"
 #include "common/recipe/walk.hpp"
 
 namespace talus::recipe {
@@ -190,8 +191,10 @@ bool names_a_dataset(const std::string& text) {
 
 void Reader::path(std::string_view key, fs::path& value, std::string_view) {
   const auto* node = walk_.find(key);
-  std::string given = value.string();
-  if (node != nullptr && !read_plain(*node, key, given, "a path in quotes")) return;
+  std::string text = value.string();
+  if (node != nullptr && !read_plain(*node, key, text, "a path in quotes")) return;
+  VectorSource source = vector_source(text);
+  const std::string given = source.file.string();
   std::vector<std::string> unset;
   const std::string expanded = expand(given, unset);
   for (const auto& name : unset) {
@@ -201,11 +204,12 @@ void Reader::path(std::string_view key, fs::path& value, std::string_view) {
   }
   if (!unset.empty()) return;
   const bool as_it_is = expanded.empty() || names_a_dataset(expanded);
-  value = as_it_is ? fs::path(expanded) : (folder_ / expanded).lexically_normal();
+  source.file = as_it_is ? fs::path(expanded) : (folder_ / expanded).lexically_normal();
+  value = source.text();
   if (as_it_is || fs::path(given).is_absolute()) return;
   const bool by_environment = given != expanded;
   const fs::path from_here = fs::path(shown_).parent_path() / given;
-  show_path_as(value, by_environment ? given : from_here.lexically_normal().string(), given);
+  show_path_as(source.file, by_environment ? given : from_here.lexically_normal().string(), given);
 }
 
 bool Reader::is_one_of(const toml::node& node, std::string_view key, const std::string& word,

@@ -53,7 +53,8 @@ class Visitor {
   virtual void text(std::string_view key, std::string& value, std::string_view help) = 0;
   /// Relative paths in a recipe are relative to the recipe's folder; after reading they are absolute. Empty = not
   /// given.
-  /// "${NAME}" inside is replaced by the environment variable NAME (an unset one is a fault).
+  /// "${NAME}" inside is replaced by the environment variable NAME (an unset one is a fault). What chooses from a
+  /// vector file (vector_source.hpp) stays as it is.
   virtual void path(std::string_view key, std::filesystem::path& value, std::string_view help) = 0;
   virtual void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view help) = 0;
   virtual void integers(std::string_view key, std::vector<int>& value, Range range, std::string_view help) = 0;

@@ -45,7 +45,7 @@ Thalweg given_thalweg(const std::filesystem::path& file, const RunMaps& maps) {
     thalweg.distance = lengths_along(thalweg.line);
   }
   thalweg.given = true;
-  thalweg.origin = "line of " + file.filename().string();
+  thalweg.origin = "line of " + vector_source(file).file.filename().string();
   return thalweg;
 }
 

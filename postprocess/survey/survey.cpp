@@ -91,7 +91,7 @@ void read_footprint(const SurveyOptions& options, const RunMaps& maps, double th
   } else if (!options.polygon.empty()) {
     if (!has_grid) survey.grid = maps.grid;
     survey.polygons = read_polygons(options.polygon, survey.grid.crs_wkt);
-    survey.inputs.push_back(options.polygon);
+    survey.inputs.push_back(vector_source(options.polygon).file);
     const auto inside = cells_inside(survey.polygons, survey.grid);
     survey.footprint.assign(inside.begin(), inside.end());
     survey.footprint_threshold = 0.5;

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "common/domain/domain_place.hpp"
-#include "common/gis/polygons.hpp"
 #include "common/recipe/recipe.hpp"
 #include "preprocess/options/fault.hpp"
 
@@ -25,20 +24,15 @@ inline constexpr auto usual_name_attribute = "name";
 struct PlaceOptions {
   std::string name;
   std::filesystem::path file;
-  std::string layer;  ///< of `file`; empty: the first
-  std::string where;  ///< which of its features, by attributes; empty: all
   std::string attribute = usual_name_attribute;
 
-  /// Which features of the file they are.
-  LayerChoice choice() const { return {layer, where}; }
   /// The method declares the keys with defaults and help; messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place) {
     v.text("name", name,
            "by which [[solve.section]], [[solve.gauge]] and [[solve.inflow]] ask for it: place = \"...\"");
-    v.path("file", file, "vector file of lines (sections, inflows) or points (gauges)");
+    v.path("file", file,
+           "vector file of lines (sections, inflows) or points (gauges): FILE|layername=LAYER|subset=CONDITION");
     v.needs(!file.empty(), fault(place + ": file is not given", "there is nothing to read", "Name a vector file"));
-    v.text("layer", layer, "layer of that file; empty = the first");
-    v.text("where", where, "which of its lines or points, by their attributes: \"id = 12\"; empty = all");
     v.text("attribute", attribute,
            "the attribute that names each line or point; where a layer has no \"name\" they are NAME-1, NAME-2, ... by "
            "the numbers of their features");

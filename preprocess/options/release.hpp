@@ -22,8 +22,6 @@ struct ReleaseOptions {
   std::string name;
   std::filesystem::path thickness_raster;
   std::filesystem::path polygons;
-  std::string layer;  ///< of `polygons`; empty: the first
-  std::string where;  ///< which of them, by attributes; empty: all
   std::string attribute = "thickness";
   double thickness = 0;      ///< one thickness for all polygons [m]; 0: that of the attribute
   double volume_factor = 1;  ///< of its thickness, and so of its volume [-]
@@ -34,11 +32,6 @@ struct ReleaseOptions {
   /// messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place, bool needed) {
     describe_thickness(v, place, needed);
-    v.text("layer", layer, "layer of polygons; empty, or none of that name = the first");
-    v.text("where", where, "which of the polygons, by their attributes: \"id = 12\"; empty = all");
-    v.needs(!needed || where.empty() || !polygons.empty(),
-            fault(place + ": where is given without polygons", "a raster of thickness has no attributes",
-                  "Leave it out, or give the release by polygons"));
     v.text("attribute", attribute, "the polygons' attribute that holds the thickness [m]");
     v.needs(!needed || polygons.empty() || thickness != 0 || !attribute.empty(),
             fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
@@ -58,7 +51,8 @@ struct ReleaseOptions {
   void describe_thickness(recipe::Visitor& v, const std::string& place, bool needed) {
     v.text("name", name, "its name; empty = release-1 or erodible-1, and so on");
     v.path("thickness_raster", thickness_raster, "raster of thickness [m]; or polygons, below");
-    v.path("polygons", polygons, "vector file of polygons");
+    v.path("polygons", polygons,
+           "vector file of polygons: FILE|layername=LAYER|subset=CONDITION, the first layer and all where left out");
     v.needs(!needed || thickness_raster.empty() != polygons.empty(),
             fault(place + (polygons.empty() ? ": neither thickness_raster nor polygons is given"
                                             : ": thickness_raster and polygons are both given"),

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "common/gis/polygons.hpp"
 #include "common/recipe/recipe.hpp"
 #include "preprocess/options/fault.hpp"
 
@@ -51,29 +50,21 @@ struct SlidingSurfaceOptions {
 /// The keys of [preprocess.source].
 struct SourceOptions {
   std::filesystem::path polygon;
-  std::string layer = "source";  ///< of `polygon`; empty, or none of that name: the first
-  std::string where;             ///< which of its polygons, by attributes; empty: all
-  double grow = 0;               ///< of the polygon, outwards [m]
-  double threshold = 0.5;        ///< [m]
-  std::vector<double> seed;      ///< easting, northing [m]; empty: the largest region
+  double grow = 0;           ///< of the polygon, outwards [m]
+  double threshold = 0.5;    ///< [m]
+  std::vector<double> seed;  ///< easting, northing [m]; empty: the largest region
   SlidingSurfaceOptions sliding_surface;
 
-  /// Which polygons of the file are the outline.
-  LayerChoice choice() const { return {layer, where}; }
   /// The method declares the keys with defaults, help and what they need of `all` others.
   template <class All>
   void describe(recipe::Visitor& v, const All& all) {
     const bool ignored = all.in_laboratory();
     v.path("polygon", polygon,
-           "outline of the source; empty = found as the connected region of lowering; needed for (5)");
+           "outline of the source, FILE|layername=LAYER|subset=CONDITION (layer \"source\" or the first, where left "
+           "out); empty = found as the connected region of lowering; needed for (5)");
     v.needs(ignored || polygon.empty() || all.base_dem.empty(),
             fault("source.polygon is given with base_dem", "the releases say what fails there",
                   "Use polygons = ... in [[preprocess.release]]"));
-    v.text("layer", layer, "layer of that file; empty, or none of that name = the first");
-    v.text("where", where, "which of its polygons, by their attributes: \"id = 12\"; empty = all");
-    v.needs(ignored || where.empty() || !polygon.empty(),
-            fault("source.where is given without source.polygon", "there is no outline to choose from",
-                  "Give the polygon, or leave it out"));
     v.number("grow_m", grow, recipe::any, "the polygon grown by this on all sides; negative: shrunk");
     v.needs(ignored || grow == 0 || !polygon.empty(),
             fault("source.grow_m is given without source.polygon", "there is no outline to grow",

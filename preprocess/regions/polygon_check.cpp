@@ -38,17 +38,18 @@ void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::pa
   }
 }
 
-std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
-                                            const LayerChoice& choice) {
-  std::vector<MapPolygon> polygons = read_polygons(file, crs_wkt, choice);
-  check_polygons(polygons, file);
+std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                            const std::string& usual) {
+  std::vector<MapPolygon> polygons = read_polygons(source, crs_wkt, usual);
+  check_polygons(polygons, vector_source(source).file);
   return polygons;
 }
 
-std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& file, const std::string& crs_wkt, double grow,
-                                            const LayerChoice& choice) {
-  std::vector<MapPolygon> polygons = read_valid_polygons(file, crs_wkt, choice);
+std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                            double grow, const std::string& usual) {
+  std::vector<MapPolygon> polygons = read_valid_polygons(source, crs_wkt, usual);
   if (grow == 0) return polygons;
+  const std::filesystem::path file = vector_source(source).file;
   polygons = grown(polygons, grow, file);
   check_polygons(polygons, file);
   return polygons;

@@ -18,12 +18,12 @@ namespace talus::preprocess {
 void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::path& file);
 
 /// read_polygons() that pass check_polygons().
-std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& file, const std::string& crs_wkt,
-                                            const LayerChoice& choice = {});
+std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                            const std::string& usual = {});
 
 /// Those, grown by a distance [m] (common/gis/grow.hpp); 0 leaves them as they are.
-std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& file, const std::string& crs_wkt, double grow,
-                                            const LayerChoice& choice = {});
+std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                            double grow, const std::string& usual = {});
 
 /// Area without the holes [m2]; rings turned as check_polygons() does.
 double area_of(const MapPolygon& polygon);

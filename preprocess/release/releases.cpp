@@ -64,8 +64,7 @@ double thickness_of(const MapPolygon& polygon, std::size_t number, const Release
 }
 
 Raster from_polygons(const ReleaseOptions& options, const MapGrid& grid) {
-  const std::vector<MapPolygon> polygons =
-      read_grown_polygons(options.polygons, grid.crs_wkt, options.grow, {options.layer, options.where});
+  const std::vector<MapPolygon> polygons = read_grown_polygons(options.polygons, grid.crs_wkt, options.grow);
   Raster thickness{grid, std::vector<double>(grid.count(), 0.0)};
   std::vector<double> covered(grid.count(), 0.0);
   bool overlap = false;

@@ -53,7 +53,7 @@ std::string name_of(const PlaceOptions& o, const PlaceFeature& feature, bool nam
   const std::string what = fmt::format("{}: {} = \"{}\"", feature.place, o.attribute, given);
   if (name.empty()) {
     faults.push_back({what, "its numbers are recorded under its name: letters, digits, - and _",
-                      "Name it, or leave it out by where = \"...\""});
+                      "Name it, or leave it out by a condition (FILE|subset=CONDITION)"});
     return "";
   }
   const auto [other, is_new] = taken.emplace(name, feature.place);
@@ -86,7 +86,8 @@ void check_ground(const PlaceFeature& feature, const std::string& name, const Ra
       {fmt::format("{} (\"{}\"): ({:.2f}, {:.2f}) lies outside the domain", feature.place, name, (*beyond)[0],
                    (*beyond)[1]),
        "nothing is computed there",
-       fmt::format("Draw it within x {:.2f} to {:.2f}, y {:.2f} to {:.2f}{}, or leave it out by where = \"...\"",
+       fmt::format("Draw it within x {:.2f} to {:.2f}, y {:.2f} to {:.2f}{}, or leave it out by a condition "
+                   "(FILE|subset=CONDITION)",
                    map.x(0), east, map.y(0), north, feature.points.size() > 1 ? "" : ", on known ground")});
 }
 
@@ -117,7 +118,7 @@ void say_what(const PlaceOptions& o, const PlaceLayer& layer, const std::vector<
 }
 
 std::vector<DomainPlace> read_place(const PlaceOptions& o, const Raster& ground) {
-  PlaceLayer layer = read_place_layer(o.file, ground.grid.crs_wkt, o.choice());
+  PlaceLayer layer = read_place_layer(o.file, ground.grid.crs_wkt);
   require_attribute(o, layer);
   say_crs(o, layer, ground.grid.crs_wkt);
   const bool named = has_attribute(layer, o.attribute);

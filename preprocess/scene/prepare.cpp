@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/map/slope.hpp"
 #include "common/map/sum.hpp"
+#include "common/recipe/vector_source.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
@@ -177,8 +178,9 @@ void judge_count(std::size_t points, const GridOptions& grid) {
 
 std::vector<std::filesystem::path> inputs_of(const Options& options) {
   std::vector<std::filesystem::path> inputs;
-  const auto add = [&](const std::filesystem::path& file) {
-    if (!file.empty()) inputs.push_back(file);
+  const auto add = [&](const std::filesystem::path& source) {
+    const std::filesystem::path file = vector_source(source).file;  // often with several layers
+    if (!file.empty() && std::find(inputs.begin(), inputs.end(), file) == inputs.end()) inputs.push_back(file);
   };
   for (const auto& file :
        {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon,
@@ -196,8 +198,7 @@ std::vector<std::filesystem::path> inputs_of(const Options& options) {
   add(options.bed.polygons);
   for (const BedZone& zone : options.bed.zones) add(zone.polygons);
   for (const ObstacleOptions& obstacle : options.obstacle) add(obstacle.polygons);
-  for (const PlaceOptions& place : options.place)  // layers of one file, as a rule
-    if (std::find(inputs.begin(), inputs.end(), place.file) == inputs.end()) add(place.file);
+  for (const PlaceOptions& place : options.place) add(place.file);
   return inputs;
 }
 

@@ -57,8 +57,7 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
   auto [survey, surfaces, of_slide, found] = memory != nullptr ? memory->surveyed(options) : surveyed(options);
   SurveyedSlide& slide = *of_slide;
   if (!survey.source.empty())
-    survey.source =
-        read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, options.source.choice());
+    survey.source = read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
   Source source =
       find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
                   options.source);
@@ -88,8 +87,7 @@ SceneRasters from_sliding_surface(const Options& options) {
   require_data(under, sliding.file);
   SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
   if (!options.source.polygon.empty())
-    pair.outline =
-        read_grown_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, options.source.choice());
+    pair.outline = read_grown_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, "source");
   Source source = find_source(pair, options.source);
   return from_source(std::move(surfaces[0]), std::move(source));
 }
@@ -160,8 +158,6 @@ std::string SurveyMemory::mark_of(Options options) {
   const GridOptions fresh;
   SourceOptions source;
   source.polygon = options.source.polygon;
-  source.layer = options.source.layer;
-  source.where = options.source.where;
   options.source = source;
   options.deposit = DepositOptions{.polygon = options.deposit.polygon};
   options.thickness_factor = 1;

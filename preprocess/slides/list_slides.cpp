@@ -19,16 +19,15 @@ namespace {
 class Layers {
  public:
   explicit Layers(const std::string& crs_wkt) : crs_wkt_(crs_wkt) {}
-  const std::vector<PolygonFeature>& read(const std::filesystem::path& file, const LayerChoice& choice) {
-    const auto key = std::tuple(file.string(), choice.layer, choice.where);
-    const auto [found, is_new] = read_.try_emplace(key);
-    if (is_new) found->second = read_polygon_features(file, crs_wkt_, choice);
+  const std::vector<PolygonFeature>& read(const std::filesystem::path& source) {
+    const auto [found, is_new] = read_.try_emplace(source.string());
+    if (is_new) found->second = read_polygon_features(source, crs_wkt_);
     return found->second;
   }
 
  private:
   const std::string& crs_wkt_;
-  std::map<std::tuple<std::string, std::string, std::string>, std::vector<PolygonFeature>> read_;
+  std::map<std::string, std::vector<PolygonFeature>> read_;
 };
 
 /// The attribute of a feature; the fault is noted where it is missing or NULL.
@@ -39,7 +38,7 @@ const FeatureValue* attribute_of(const PolygonFeature& feature, const std::strin
     if (value.name != name) continue;
     if (!value.is_null) return &value;
     faults.push_back({fmt::format("{}: attribute {} is NULL", feature.place, name), "the slide needs a value",
-                      "Give one, or leave the polygon out with where = \"...\" in [slides]"});
+                      "Give one, or leave the polygon out: outlines = \"FILE|subset=CONDITION\""});
     return nullptr;
   }
   faults.push_back({fmt::format("{}: no attribute {}", feature.place, name),
@@ -62,8 +61,7 @@ double amount_of(const PolygonFeature& feature, const std::string& name, std::ve
 Slide from_feature(const PolygonFeature& feature, const SlideOptions& options, std::vector<Fault>& faults) {
   Slide slide;
   slide.place = feature.place;
-  slide.file = options.outlines;
-  slide.choice = {options.layer, feature.where};
+  slide.source = feature.source;
   slide.outline = feature.polygons;
   slide.name = fmt::format("slide-{}", feature.number);
   if (!options.name_from.empty())
@@ -76,7 +74,7 @@ Slide from_feature(const PolygonFeature& feature, const SlideOptions& options, s
       slide.set.emplace_back(one.key, value->text);
   if (feature.polygons.empty())
     faults.push_back({feature.place + ": no polygon", "a slide is released within its outline",
-                      "Draw it, or leave the feature out with where = \"...\" in [slides]"});
+                      "Draw it, or leave the feature out: outlines = \"FILE|subset=CONDITION\""});
   return slide;
 }
 
@@ -91,19 +89,16 @@ std::pair<std::string, std::string> parted(const std::string& text) {
   return {bare(text.substr(0, sign)), bare(text.substr(sign + 1))};
 }
 
-Slide from_scenario(const ScenarioOptions& scenario, const SlideOptions& options, Layers& layers,
-                    std::vector<Fault>& faults) {
+Slide from_scenario(const ScenarioOptions& scenario, Layers& layers, std::vector<Fault>& faults) {
   Slide slide;
   slide.name = scenario.name;
   slide.place = "[[slides.scenario]] " + scenario.name;
-  const bool own = !scenario.outline.empty();
-  slide.file = own ? scenario.outline : options.outlines;
-  slide.choice = {own || !scenario.layer.empty() ? scenario.layer : options.layer, scenario.where};
-  for (const PolygonFeature& feature : layers.read(slide.file, slide.choice))
+  slide.source = scenario.outline;
+  for (const PolygonFeature& feature : layers.read(slide.source))
     slide.outline.insert(slide.outline.end(), feature.polygons.begin(), feature.polygons.end());
   if (slide.outline.empty())
     faults.push_back({slide.place + ": no polygon", "its layer holds none that meets its condition",
-                      "Mend outline, layer or where; look at it: ogrinfo -al " + slide.file.string()});
+                      "Mend outline; look at it: ogrinfo -al " + vector_source(slide.source).file.string()});
   slide.thickness = scenario.thickness;
   slide.depth = scenario.depth;
   slide.volume = scenario.volume;
@@ -177,15 +172,13 @@ std::vector<Slide> list_slides(const SlideOptions& options, ModelIs model, const
   std::vector<Fault> faults;
   Layers layers(crs_wkt);
   if (options.scenario.empty()) {
-    const auto& features = layers.read(options.outlines, {options.layer, options.where});
-    if (features.empty())
-      throw DataError({options.outlines.string() + ": no feature" +
-                           (options.where.empty() ? "" : fmt::format(" whose attributes meet {}", options.where)),
-                       "each polygon of the layer is a slide", "Mend layer or where in [slides]"});
+    const auto& features = layers.read(options.outlines);
+    if (const auto [file, layer, where] = vector_source(options.outlines); features.empty())
+      throw DataError({file.string() + ": no feature" + (where.empty() ? "" : " whose attributes meet " + where),
+                       "each polygon of the layer is a slide", "Mend outlines in [slides]"});
     for (const PolygonFeature& feature : features) slides.push_back(from_feature(feature, options, faults));
   }
-  for (const ScenarioOptions& scenario : options.scenario)
-    slides.push_back(from_scenario(scenario, options, layers, faults));
+  for (const ScenarioOptions& scenario : options.scenario) slides.push_back(from_scenario(scenario, layers, faults));
   for (const Slide& slide : slides) check_amount(slide, model, faults);
   check_names(slides, faults);
   check_set(slides, faults);

@@ -49,7 +49,8 @@ void say_plan(const EnsemblePlan& plan, const SlideOptions& options) {
 std::vector<fs::path> inputs_of_slides(const recipe::Recipe& recipe) {
   const SlideOptions slides = slides_of(recipe);
   std::vector<fs::path> inputs = inputs_of(shared_options(recipe, slides));
-  const auto add = [&](const fs::path& file) {
+  const auto add = [&](const fs::path& source) {
+    const fs::path file = vector_source(source).file;
     if (!file.empty() && std::find(inputs.begin(), inputs.end(), file) == inputs.end()) inputs.push_back(file);
   };
   add(slides.outlines);

@@ -27,16 +27,13 @@ bool gives(const recipe::Recipe& recipe, const std::string& key) {
 }
 
 /// The one [[preprocess.release]] of a slide.
-std::string release_of(const std::filesystem::path& file, const LayerChoice& choice, double thickness) {
-  return fmt::format("preprocess.release=[{{polygons={},layer={},where={},thickness_m={}}}]",
-                     recipe::toml_text(file.string()), recipe::toml_text(choice.layer), recipe::toml_text(choice.where),
+std::string release_of(const std::filesystem::path& source, double thickness) {
+  return fmt::format("preprocess.release=[{{polygons={},thickness_m={}}}]", recipe::toml_text(source.string()),
                      recipe::toml_number(thickness));
 }
 
-std::vector<std::string> source_of(const std::filesystem::path& file, const LayerChoice& choice) {
-  return {"preprocess.source.polygon=" + recipe::toml_text(file.string()),
-          "preprocess.source.layer=" + recipe::toml_text(choice.layer),
-          "preprocess.source.where=" + recipe::toml_text(choice.where)};
+std::string source_of(const std::filesystem::path& source) {
+  return "preprocess.source.polygon=" + recipe::toml_text(source.string());
 }
 
 std::optional<double> number_in(const std::string& text) {
@@ -54,9 +51,9 @@ std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapG
     check_polygons(turned, slide.place);
     double area = 0;
     for (const MapPolygon& polygon : turned) area += area_of(polygon);
-    values.push_back(release_of(slide.file, slide.choice, slide.thickness > 0 ? slide.thickness : slide.volume / area));
+    values.push_back(release_of(slide.source, slide.thickness > 0 ? slide.thickness : slide.volume / area));
   } else {
-    values = source_of(slide.file, slide.choice);
+    values.push_back(source_of(slide.source));
     if (slide.depth > 0)
       values.push_back("preprocess.source.sliding_surface.depth_m=" + recipe::toml_number(slide.depth));
     if (slide.volume > 0)
@@ -140,11 +137,9 @@ ModelIs model_of(const recipe::Recipe& recipe) {
 }
 
 Options shared_options(const recipe::Recipe& recipe, const SlideOptions& slides) {
-  const std::filesystem::path& some = slides.scenario.empty() || slides.scenario.front().outline.empty()
-                                          ? slides.outlines
-                                          : slides.scenario.front().outline;
+  const std::filesystem::path& some = slides.scenario.empty() ? slides.outlines : slides.scenario.front().outline;
   const bool onto = model_of(recipe) == ModelIs::base;
-  return recipe.with(onto ? std::vector{release_of(some, {}, 1)} : source_of(some, {})).read<Options>("preprocess");
+  return recipe.with({onto ? release_of(some, 1) : source_of(some)}).read<Options>("preprocess");
 }
 
 EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& slides, const SlideWindows& windows,

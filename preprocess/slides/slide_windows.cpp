@@ -176,7 +176,7 @@ void require_inside(const std::vector<Slide>& slides, const std::vector<CellBox>
                      "{:.0f}..{:.0f}",
                      grid.west + b.west * grid.cell, grid.west + b.east * grid.cell, grid.south + b.south * grid.cell,
                      grid.south + b.north * grid.cell, grid.west, grid.east(), grid.south, grid.north()),
-         "Leave it out with where = \"...\" in [slides], or give a model that holds it"});
+         "Leave it out (outlines = \"FILE|subset=CONDITION\"), or give a model that holds it"});
   }
   if (!faults.empty()) throw DataError(std::move(faults));
 }

@@ -32,9 +32,8 @@ Options shared_options(const recipe::Recipe& recipe, const SlideOptions& slides)
 /// One slide, as the recipe and the attributes of its polygons give it.
 struct Slide {
   std::string name;
-  std::string place;  ///< where it is given, for messages
-  std::filesystem::path file;
-  LayerChoice choice;                                    ///< its polygons in the file
+  std::string place;                                     ///< where it is given, for messages
+  std::filesystem::path source;                          ///< its polygons in a vector file
   std::vector<MapPolygon> outline;                       ///< these, in the CRS of the model
   double thickness = 0, depth = 0, volume = 0;           ///< [m], [m], [m3]; 0: not given
   std::vector<std::pair<std::string, std::string>> set;  ///< keys of the recipe and their values

@@ -35,16 +35,15 @@ double normal_quantile(double confidence) {
 
 void read_outlines(Survey& s, const Options& options) {
   if (!options.source.polygon.empty())
-    s.source =
-        read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, options.source.choice());
+    s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
   if (!options.deposit.polygon.empty())
-    s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, {"deposit"});
+    s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
 }
 
 /// The polygons of what changed: named ones, source and deposit.
 std::vector<MapPolygon> changed_ground(const Survey& s, const std::filesystem::path& named) {
   std::vector<MapPolygon> all;
-  if (!named.empty()) all = read_polygons(named, s.grid.crs_wkt, {"changed"});
+  if (!named.empty()) all = read_polygons(named, s.grid.crs_wkt, "changed");
   all.insert(all.end(), s.source.begin(), s.source.end());
   all.insert(all.end(), s.deposit.begin(), s.deposit.end());
   return all;

@@ -25,14 +25,11 @@ CSV
 
 [[preprocess.place]]
 name = "sections"
-file = "places.gpkg"
-layer = "sections"
-where = "state = 'built'"
+file = "places.gpkg|layername=sections|subset=state = 'built'"
 
 [[preprocess.place]]
 name = "gauges"
-file = "places.gpkg"
-layer = "gauges"
+file = "places.gpkg|layername=gauges"
 attribute = "label"
 
 [[solve.section]]
@@ -97,16 +94,16 @@ test_an_inflow_enters_through_a_line_of_a_file() {
 
 test_what_is_wrong_is_told_by_file_and_feature() {
   places_scene
-  sed -i "s/^where = .*/where = \"state <> 'x'\"/" recipe.toml
+  sed -i "s/subset=.*/subset=state <> 'x'\"/" recipe.toml
   expect_exit 3 preprocess
   expect_words "places.gpkg, feature 3: it is a POLYGON (a line or a point is wanted)"
-  sed -i "s/^where = .*/where = \"state = 'none'\"/" recipe.toml
+  sed -i "s/subset=.*/subset=state = 'none'\"/" recipe.toml
   expect_exit 3 preprocess
   expect_words "no feature in layer \"sections\" whose attributes meet state = 'none'"
-  sed -i "s/^where = .*/where = \"state = 'built'\"/; s/^layer = \"gauges\"/layer = \"gauge\"/" recipe.toml
+  sed -i "s/subset=.*/subset=state = 'built'\"/; s/layername=gauges/layername=gauge/" recipe.toml
   expect_exit 3 preprocess
   expect_words 'no layer "gauge" in it (it has sections, gauges)'
-  sed -i 's/^layer = "gauge"/layer = "gauges"/; s/^place = "sections"/place = "section"/' recipe.toml
+  sed -i 's/layername=gauge"/layername=gauges"/; s/^place = "sections"/place = "section"/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 2 solve --check
   expect_words '[[solve.section]] number 1: place = "section" (domain.vdb has the places sections, gauges)'

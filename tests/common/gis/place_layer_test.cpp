@@ -60,15 +60,14 @@ TEST(PlaceLayer, conditions_choose_among_features) {
   const auto file =
       scratch.write("p.geojson", places_of(place_feature("Point", "[1,1]", R"({"id":1})") + "," +
                                            place_feature("Polygon", "[[[0,0],[1,0],[1,1],[0,0]]]", R"({"id":2})")));
-  EXPECT_EQ(read_place_layer(file, "", {"", "id = 1"}).features.size(), 1U) << "the polygon is not looked at";
-  EXPECT_EQ(fault_of<DataError>([&] {
-              read_place_layer(file, "", {"", "id = 3"});
-            }),
+  EXPECT_EQ(read_place_layer(file.string() + "|subset=id = 1", "").features.size(), 1U)
+      << "the polygon is not looked at";
+  EXPECT_EQ(fault_of<DataError>([&] { read_place_layer(file.string() + "|subset=id = 3", ""); }),
             file.string() +
                 ": no feature in layer \"p\" whose attributes meet id = 3 (none meets it). Draw lines or points there, "
-                "or choose others by layer and where");
+                "or choose others (FILE|layername=LAYER|subset=CONDITION)");
   EXPECT_NE(fault_of<DataError>([&] {
-              read_place_layer(file, "", {"", "colour = 3"});
+              read_place_layer(file.string() + "|subset=colour = 3", "");
             }).find("cannot be understood"),
             std::string::npos);
 }
@@ -76,9 +75,7 @@ TEST(PlaceLayer, conditions_choose_among_features) {
 TEST(PlaceLayer, layers_that_are_not_there_or_empty_are_refused) {
   const Scratch scratch;
   const auto file = scratch.write("p.geojson", places_of(place_feature("Point", "[1,1]")));
-  EXPECT_EQ(fault_of<DataError>([&] {
-              read_place_layer(file, "", {"roads", ""});
-            }),
+  EXPECT_EQ(fault_of<DataError>([&] { read_place_layer(file.string() + "|layername=roads", ""); }),
             file.string() + ": no layer \"roads\" in it (it has p). Name one that is there");
   const auto empty = scratch.write("e.geojson", places_of(""));
   EXPECT_NE(fault_of<DataError>([&] { read_place_layer(empty, ""); }).find("the layer is empty"), std::string::npos);

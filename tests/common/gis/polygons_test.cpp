@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "common/error.hpp"
@@ -57,6 +58,24 @@ TEST(ReadPolygons, carries_them_to_the_working_crs) {
   EXPECT_NEAR(polygons.at(0).rings.at(0).at(0)[1], 5427228.0, 1e3);  // 49 degrees north, about
 }
 
+TEST(ReadPolygons, a_layer_that_is_named_must_be_there_and_a_usual_one_need_not) {
+  const Scratch scratch;
+  const auto feature = [](int id, const std::string& name) {
+    return fmt::format(R"({{"type":"Feature","properties":{{"id":{},"name":"{}"}},"geometry":{{"type":"Polygon",
+"coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}}}})",
+                       id, name);
+  };
+  const std::string file =
+      scratch.write("a.geojson", collection(feature(1, "north") + "," + feature(2, "south"), utm_11)).string();
+  EXPECT_EQ(read_polygons(file, "", "source").size(), 2u);
+  EXPECT_EQ(read_polygons(file + "|layername=a|subset=id = 2", "", "source").at(0).name, "south");
+  EXPECT_EQ(fault_of<DataError>([&] { read_polygons(file + "|layername=source", ""); }),
+            file + ": no layer \"source\" in it (it has a). Name one that is there");
+  const auto features = read_polygon_features(file, "");
+  EXPECT_EQ(read_polygons(features.at(1).source, "").at(0).name, "south");
+  EXPECT_EQ(vector_source(features.at(1).source).layer, "a") << "whatever layer is usual where it is read";
+}
+
 TEST(ReadPolygons, refuses_coordinates_that_do_not_fit_their_crs) {
   const Scratch scratch;
   const auto file = scratch.write(
@@ -73,15 +92,15 @@ TEST(ReadPolygons, refuses_files_without_polygons) {
   const Scratch scratch;
   const auto points = scratch.write(
       "p.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}})"));
-  EXPECT_EQ(
-      fault_of<DataError>([&] { read_polygons(points, ""); }),
-      points.string() +
-          ": no polygon in its first layer (it holds POINT). Draw the outline as a polygon, or put that layer first");
+  EXPECT_EQ(fault_of<DataError>([&] { read_polygons(points, ""); }),
+            points.string() +
+                ": no polygon in layer \"p\" (it holds POINT). Draw the outline as a polygon, or name another layer "
+                "(FILE|layername=LAYER|subset=CONDITION)");
   const auto empty = scratch.write("e.geojson", collection(""));
   EXPECT_EQ(fault_of<DataError>([&] { read_polygons(empty, ""); }),
             empty.string() +
-                ": no polygon in its first layer (the layer is empty). Draw the outline as a polygon, or put that "
-                "layer first");
+                ": no polygon in layer \"e\" (the layer is empty). Draw the outline as a polygon, or name another "
+                "layer (FILE|layername=LAYER|subset=CONDITION)");
   EXPECT_EQ(fault_of<DataError>([&] { read_polygons(scratch / "none.gpkg", ""); }),
             (scratch / "none.gpkg").string() + ": no such file. Check the path in the recipe");
   const auto words = scratch.write("w.shp", "words");
@@ -109,7 +128,7 @@ TEST(ReadLines, refuses_files_without_a_line) {
       "a.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
 [[[0,0],[1,0],[1,1],[0,0]]]}})",
                               utm_11));
-  EXPECT_NE(fault_of<DataError>([&] { read_lines(file, ""); }).find("no line in its first layer (it holds POLYGON)"),
+  EXPECT_NE(fault_of<DataError>([&] { read_lines(file, ""); }).find("no line in layer \"a\" (it holds POLYGON)"),
             std::string::npos);
   EXPECT_NE(fault_of<DataError>([&] { read_lines(scratch / "none.gpkg", ""); }).find("no such file"),
             std::string::npos);

@@ -216,6 +216,9 @@ TEST_F(RecipeFile, replaces_environment_variables_in_paths) {
   EXPECT_EQ(read("[solve]\nterrain = \"${TALUS_TEST_DATA}/dem.tif\"").terrain, "/data/frank/dem.tif");
   ::setenv("TALUS_TEST_DATA", "sub", 1);
   EXPECT_EQ(read("[solve]\nterrain = \"${TALUS_TEST_DATA}/../dem.tif\"").terrain, scratch / "dem.tif");
+  EXPECT_EQ(read("[solve]\nterrain = \"${TALUS_TEST_DATA}/../a.gpkg|subset=n = './${X}'\"").terrain,
+            (scratch / "a.gpkg").string() + "|subset=n = './${X}'")
+      << "a condition stays as it is";
   ::unsetenv("TALUS_TEST_DATA");
   EXPECT_EQ(
       faults("[solve]\nterrain = \"${TALUS_TEST_DATA}/dem.tif\""),

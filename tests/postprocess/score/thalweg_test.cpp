@@ -99,7 +99,7 @@ TEST(Thalweg, refuses_what_is_not_one_line_over_the_run) {
       fault(geojson("MultiLineString", "[[[600010,5100150],[600100,5100150]],[[600200,5100150],[600300,5100150]]]"))
           .find("2 lines (a thalweg is one line)"),
       std::string::npos);
-  EXPECT_NE(fault(geojson("Point", "[600010,5100150]")).find("no line in its first layer (it holds POINT)"),
+  EXPECT_NE(fault(geojson("Point", "[600010,5100150]")).find("no line in layer \"line\" (it holds POINT)"),
             std::string::npos);
 }
 

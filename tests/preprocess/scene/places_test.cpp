@@ -41,7 +41,7 @@ TEST(Places, lines_and_points_have_the_names_of_their_attribute) {
   EXPECT_EQ(places[0], (DomainPlace{"set", "gully", {{20, 20}, {20, 80}, {50, 80}}}));
   EXPECT_EQ(places[1], (DomainPlace{"set", "Road-7", {{100, 50}}}));
   o = table(scratch, "x,LINESTRING(20 20 5 80)\n", "NAME,WKT");
-  o.where = "name = 'y'";
+  o.file += "|subset=name = 'y'";
   expect_words(fault(o), "whose attributes meet name = 'y'");
 }
 

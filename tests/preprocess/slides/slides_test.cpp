@@ -100,8 +100,8 @@ TEST(Slides, are_what_a_recipe_of_one_of_them_makes) {
   const auto alone = recipe::Recipe(many.scratch.write(
       "alone.toml",
       fmt::format("[preprocess]\nbase_dem = \"model.tif\"\n[preprocess.grid]\nextent_m = [{}, {}, {}, {}]\n"
-                  "[[preprocess.release]]\npolygons = \"areas.geojson\"\n"
-                  "where = \"name = 'b'\"\nthickness_m = 3.0\n",
+                  "[[preprocess.release]]\n"
+                  "polygons = \"areas.geojson|subset=name = 'b'\"\nthickness_m = 3.0\n",
                   window.west, window.south, window.east(), window.north())));
   const Domain one = prepare(*plan.ground[1], Points::seeded).domain,
                other = prepare(alone.read<Options>("preprocess"), Points::seeded).domain;
@@ -175,7 +175,8 @@ TEST(Slides, without_a_polygon_are_refused) {
   const std::string none = ManySlides::fault(many.recipe(by_depth));
   EXPECT_NE(none.find("no feature"), std::string::npos) << none;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)")});
-  const std::string filtered = ManySlides::fault(many.recipe(std::string(by_depth) + "where = \"depth > 5\"\n"));
+  const std::string filtered =
+      ManySlides::fault(many.recipe("outlines = \"areas.geojson|subset=depth > 5\"\nthickness_from = \"depth\"\n"));
   EXPECT_NE(filtered.find("no feature whose attributes meet depth > 5"), std::string::npos) << filtered;
 }
 
@@ -202,16 +203,19 @@ TEST(Slides, that_are_listed_choose_their_outline_and_set_values) {
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)"),
                  ManySlides::feature(505, 405, R"("name":"b","depth":3)")});
   const auto recipe = many.recipe(
-      "outlines = \"areas.geojson\"\nmargin_m = 50.0\n"
-      "[[slides.scenario]]\nname = \"soft\"\nwhere = \"name = 'b'\"\nthickness_m = 2.5\n"
+      "margin_m = 50.0\n"
+      "[[slides.scenario]]\nname = \"soft\"\noutline = \"areas.geojson|subset=name = 'b'\"\nthickness_m = 2.5\n"
       "set = [\"solve.base.friction_angle_deg = 14\"]\n"
-      "[[slides.scenario]]\nname = \"stiff\"\nwhere = \"name = 'b'\"\nthickness_m = 2.5\n"
+      "[[slides.scenario]]\nname = \"stiff\"\noutline = \"areas.geojson|subset=name = 'b'\"\nthickness_m = 2.5\n"
       "set = [\"solve.base.friction_angle_deg = 24\"]\n");
   const EnsemblePlan plan = ManySlides::plan(recipe);
   EXPECT_EQ(plan.table.names, (std::vector<std::string>{"soft", "stiff"}));
   EXPECT_EQ(plan.table.find("solve.base.friction_angle_deg")->values, (std::vector<double>{14, 24}));
   EXPECT_EQ(plan.table.values_of(1, "solve."), (std::vector<std::string>{"solve.base.friction_angle_deg=24"}));
   EXPECT_EQ(plan.table.slides->windows[0].column, plan.table.slides->windows[1].column);
+  EXPECT_NE(ManySlides::fault(many.recipe("outlines = \"areas.geojson\"\n[[slides.scenario]]\nname = \"soft\"\n"))
+                .find("[[slides.scenario]] soft has no outline"),
+            std::string::npos);
 }
 
 }  // namespace
