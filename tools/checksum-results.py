@@ -36,14 +36,10 @@ corner_m = [0.0, 0.0, 0.0]
 slope = [{slope}, 0.05]
 [[preprocess.box]]
 name = "upper"
-extent_m = [20.0, 5.0, 24.0, 11.0]
-bottom_m = 0.0
-top_m = 3.0
+extent_m = [20.0, 5.0, 24.0, 11.0, 0.0, 3.0]
 [[preprocess.box]]
 name = "lower"
-extent_m = [16.0, 5.0, 20.0, 11.0]
-bottom_m = 0.0
-top_m = 3.0
+extent_m = [16.0, 5.0, 20.0, 11.0, 0.0, 3.0]
 """
 
 # name: (keys of [solve], tables after it, {layer, slope})
@@ -95,7 +91,7 @@ VARIANTS = {
     ),
     "load": (
         "",
-        "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\nforce_N = [1e5, 0.0, 0.0]\n" "ramp_s = 0.5\n",
+        "[[solve.load]]\nextent_m = [20.0, 5.0, 22.0, 8.0, 0.0, 3.0]\nforce_N = [1e5, 0.0, 0.0]\n" "ramp_s = 0.5\n",
         {},
     ),
     "gravity-loading": ("gravity_loading_steps = 4", "", {}),
@@ -143,7 +139,7 @@ VARIANTS = {
     "newmark-load-walls": (
         'integrator = "newmark"',
         '[[solve.wall]]\naxis = "x"\nposition_m = 12.0\n'
-        "[[solve.load]]\nbox_m = [20.0, 22.0, 5.0, 8.0, 0.0, 3.0]\n"
+        "[[solve.load]]\nextent_m = [20.0, 5.0, 22.0, 8.0, 0.0, 3.0]\n"
         "force_N = [1e5, 0.0, 0.0]\n",
         {},
     ),

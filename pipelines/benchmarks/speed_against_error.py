@@ -101,7 +101,7 @@ def sand(cell):
     return {
         "preprocess": {
             "laboratory": {"cells": [columns_of(1.35), 8], "corner_m": [-4 * cell, -4 * cell, 0.0]},
-            "box": [{"name": "sand", "extent_m": [0.0, 0.0, 0.09, cell], "bottom_m": 0.0, "top_m": 0.63}],
+            "box": [{"name": "sand", "extent_m": [0.0, 0.0, 0.09, cell, 0.0, 0.63]}],
             "grid": {"points_per_cell": [3, 3, 3]},
         },
         "solve": {"point_frames": False, "frame_interval_s": 1.5},
@@ -141,7 +141,7 @@ SLOPE = math.radians(20)
 SLAB = Scene("slab", "tests/validation/B1/recipe.toml", 1, 0.5, 1e8, {
     "preprocess": {
         "laboratory": {"cells": [80, 50], "slope": [-math.tan(SLOPE), 0.0]},
-        "box": [{"name": "slab", "extent_m": [10.0, 10.0, 70.0, 40.0], "bottom_m": 0.0, "top_m": 2.0}],
+        "box": [{"name": "slab", "extent_m": [10.0, 10.0, 70.0, 40.0, 0.0, 2.0]}],
     },
     "solve": {
         "end_time_s": 600.0, "history_interval_s": 10.0, "frame_interval_s": 600.0, "point_frames": False,

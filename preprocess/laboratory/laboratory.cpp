@@ -131,7 +131,7 @@ std::size_t count_box_points(const Options& options) {
 
 SeedPoints seed_boxes(const Options& options) {
   SeedPoints points;
-  Shift shift(options.grid.jitter, static_cast<std::uint64_t>(options.grid.jitter_seed));
+  Shift shift(options.grid.jitter);
   for (const auto& [box, item] : all_pieces(options)) {
     const auto n = lattice_of(box, options.grid);
     const auto side = sides_of(box);

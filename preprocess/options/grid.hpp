@@ -24,7 +24,6 @@ struct GridOptions {
   double layer_height = 0;  ///< [m]; 0: by the thickness of the release (default_layer_height()), or spacing
   std::vector<int> points_per_cell{2, 2, 2};
   double jitter = 0;
-  int jitter_seed = 1;
   std::vector<double> extent;  ///< west, south, east, north [m]; empty: where all DEMs overlap
   EdgeNodata edge_nodata = EdgeNodata::refuse;
 
@@ -48,8 +47,8 @@ struct GridOptions {
     v.needs(three_positive(points_per_cell),
             fault(fmt::format("grid.points_per_cell = [{}]", fmt::join(points_per_cell, ", ")),
                   "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]"));
-    v.number("jitter", jitter, recipe::Range{0, 0.5}, "random shift of the points, as a part of their spacing");
-    v.integer("jitter_seed", jitter_seed, recipe::not_negative, "seed of that shift");
+    v.number("jitter", jitter, recipe::Range{0, 0.5},
+             "random shift of the points, as a part of their spacing; equal for equal points");
     v.numbers("extent_m", extent, recipe::any,
               "[west, south, east, north] of the working grid, as gdalwarp -te; empty = where all DEMs overlap");
     v.needs(extent.empty() || (extent.size() == 4 && extent[0] < extent[2] && extent[1] < extent[3]),

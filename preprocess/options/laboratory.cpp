@@ -65,19 +65,20 @@ void LaboratoryOptions::describe(recipe::Visitor& v, const Options& all) {
 
 void BoxOptions::describe(recipe::Visitor& v) {
   v.text("name", name, "name of this box; empty = box-1, box-2, ...");
-  recipe::fixed_list<double>(v, "extent_m", {&west, &south, &east, &north}, recipe::any,
-                             "[west, south, east, north]; a multiple of the points' spacing wide",
+  recipe::fixed_list<double>(v, "extent_m", {&west, &south, &east, &north, &bottom, &top}, recipe::any,
+                             "[west, south, east, north, bottom, top], the last two above the ground; multiples of the "
+                             "points' spacing",
                              "[[preprocess.box]]");
-  v.number("bottom_m", bottom, recipe::not_negative, "lower side, above the ground");
-  v.number("top_m", top, recipe::not_negative, "upper side, above the ground");
+  v.needs(!(bottom < 0), fault(fmt::format("box: bottom = {} in extent_m", bottom), "it lies below the ground",
+                               "Give a height above the ground"));
   v.optional_number("top_east_m", top_east, recipe::not_negative,
-                    "upper side at the eastern end, where it slopes; none = top_m");
+                    "upper side at the eastern end, where it slopes; none = that of extent_m");
 }
 
 std::array<BoxSide, 3> sides_of(const BoxOptions& b) {
   return {{{"west", "east", b.west, b.east},
            {"south", "north", b.south, b.north},
-           {"bottom_m", "top_m", b.bottom, std::max(b.top, b.top_east.value_or(b.top))}}};
+           {"bottom", "top", b.bottom, std::max(b.top, b.top_east.value_or(b.top))}}};
 }
 
 std::string box_name(const BoxOptions& box, std::size_t item) {
@@ -124,8 +125,8 @@ class BoxChecker {
     const auto sides = sides_of(b);
     const auto spacing = point_spacing(o_.grid);
     if (std::min(b.top, b.top_east.value_or(b.top)) < b.bottom && b.top_east)
-      add(fmt::format("box {}: top_m = {}, top_east_m = {}, bottom_m = {}", item + 1, b.top, *b.top_east, b.bottom),
-          "the top falls below the bottom", "Give tops from bottom_m on, and end the box where they meet");
+      add(fmt::format("box {}: top = {}, top_east_m = {}, bottom = {}", item + 1, b.top, *b.top_east, b.bottom),
+          "the top falls below the bottom", "Give tops from the bottom on, and end the box where they meet");
     for (std::size_t a = 0; a < 3; ++a) {
       if (extends(sides[a], item)) fits(sides[a], spacing[a], item);
     }

@@ -25,8 +25,8 @@ void Options::describe(recipe::Visitor& v) {
   v.number("thickness_factor", thickness_factor, recipe::positive,
            "the released thickness times this; the bed and the outline stay, the surface before follows");
   v.needs(thickness_factor == 1 || std::all_of(box.begin(), box.end(), [](const auto& b) { return !(b.bottom > 0); }),
-          fault(fmt::format("thickness_factor = {:g} with a box above the ground (bottom_m > 0)", thickness_factor),
-                "it would be lifted, not made thicker", "Give top_m and bottom_m of the boxes instead"));
+          fault(fmt::format("thickness_factor = {:g} with a box whose bottom lies above the ground", thickness_factor),
+                "it would be lifted, not made thicker", "Give extent_m of the boxes instead"));
   recipe::table(v, "coregistration", coregistration, "for (1): after_dem brought onto before_dem", *this);
   recipe::table(v, "difference", difference, "for (1): after_dem less before_dem, and from where on it is believed",
                 *this);

@@ -67,12 +67,8 @@ double default_layer_height(const Raster& thickness, double spacing) {
 }
 
 Seeding seeding_of(const GridOptions& options, double layer_height) {
-  return {options.points_per_cell.at(0),
-          options.points_per_cell.at(1),
-          options.points_per_cell.at(2),
-          layer_height,
-          options.jitter,
-          static_cast<std::uint64_t>(options.jitter_seed)};
+  const auto& n = options.points_per_cell;
+  return {n.at(0), n.at(1), n.at(2), layer_height, options.jitter};
 }
 
 std::size_t count_points(const std::vector<Release>& releases, const Seeding& seeding) {
@@ -92,7 +88,7 @@ SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seed
   reserve(points, count_points(releases, seeding));
   if (releases.empty()) return points;
   const MapGrid& grid = releases.front().thickness.grid;
-  Shift shift(seeding.jitter, seeding.jitter_seed);
+  Shift shift(seeding.jitter);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       double foot = 0;

@@ -17,7 +17,6 @@ struct Seeding {
   int along_x = 2, along_y = 2, in_height = 2;  // points per cell of the background grid
   double layer_height = 0;                      // h_z [m]
   double jitter = 0;                            // 0..0.5 of the points' spacing
-  std::uint64_t jitter_seed = 1;
 };
 
 /// The height of a layer where the recipe gives none [m]: half the median thickness, so that most of the release has

@@ -3,20 +3,19 @@
 // The random shift of a seeded point.
 #pragma once
 
-#include <cstdint>
 #include <random>
 
 namespace talus::preprocess {
 
-/// Uniform in -size..size, the same on every machine (the standard's distributions are not).
+/// Uniform in -size..size, the same in every run and on every machine (the standard's distributions are not).
 class Shift {
  public:
-  Shift(double size, std::uint64_t seed) : size_(size), random_(seed) {}
+  explicit Shift(double size) : size_(size) {}
   double operator()() { return size_ == 0 ? 0.0 : size_ * (2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1); }
 
  private:
   double size_;
-  std::mt19937_64 random_;
+  std::mt19937_64 random_{1};
 };
 
 }  // namespace talus::preprocess

@@ -168,7 +168,6 @@ std::string SurveyMemory::mark_of(Options options) {
   options.grid.layer_height = fresh.layer_height;
   options.grid.points_per_cell = fresh.points_per_cell;
   options.grid.jitter = fresh.jitter;
-  options.grid.jitter_seed = fresh.jitter_seed;
   return recipe::to_toml(options, "preprocess", false);
 }
 

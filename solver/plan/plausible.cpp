@@ -127,7 +127,7 @@ void judge_loads(const Scene& scene, const SolveOptions& o) {
       {fmt::format("[[solve.load]] force_N of {:.3g} N on {:.3g} m3 would strain it by {:.3g}", force, volume, strain),
        "the force over the section of what it pulls at is beyond the modulus: it throws the mass out of the domain, "
        "or squashes it",
-       fmt::format("Give a smaller force_N, of {:.2g} N or less, or a larger box_m",
+       fmt::format("Give a smaller force_N, of {:.2g} N or less, or a larger extent_m",
                    force * most_load_strain / strain)},
       {{"force", force, "N"}, {"strain", strain, "1"}, {"volume", volume, "m3"}});
 }

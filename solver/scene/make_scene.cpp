@@ -31,14 +31,14 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
     double volume = 0;
     for (std::size_t p = 0; p < domain.points.size(); ++p) {
       const double x = domain.points.x[p], y = domain.points.y[p], z = domain.points.height[p];
-      if (x < b[0] || x > b[1] || y < b[2] || y > b[3] || z < b[4] || z > b[5]) continue;
+      if (x < b[0] || x > b[2] || y < b[1] || y > b[3] || z < b[4] || z > b[5]) continue;
       scene.points.load[p] = static_cast<int>(l);
       volume += domain.points.volume[p];
     }
     if (!(volume > 0)) {
       faults.push_back({fmt::format("[[solve.load]] number {}: no material point starts inside its box", l + 1),
                         "the load would pull at nothing",
-                        "Widen box_m (west, east, south, north, bottom, top above the ground)"});
+                        "Widen extent_m (west, south, east, north, bottom, top above the ground)"});
     }
     scene.load_volumes.push_back(volume);
   }

@@ -76,7 +76,7 @@ test_load_that_throws_the_mass_out_is_refused_by_name() {
   cat >>recipe.toml <<'TOML'
 
 [[solve.load]]
-box_m = [500000.0, 500200.0, 5000000.0, 5000200.0, 0.0, 10.0]
+extent_m = [500000.0, 5000000.0, 500200.0, 5000200.0, 0.0, 10.0]
 force_N = [0.0, 0.0, 1.0e15]
 TOML
   expect_exit 0 preprocess

@@ -209,7 +209,7 @@ VRT
 
 test_all_faults_of_a_scene_at_once() {
   scene
-  printf '[[solve.load]]\nbox_m = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0]\nforce_N = [1.0, 0.0, 0.0]\n' >>recipe.toml
+  printf '[[solve.load]]\nextent_m = [0.0, 0.0, 1.0, 1.0, 0.0, 1.0]\nforce_N = [1.0, 0.0, 0.0]\n' >>recipe.toml
   printf '[[solve.part]]\nrelease = "x"\n' >>recipe.toml
   expect_exit 0 preprocess
   expect_exit 2 solve --check

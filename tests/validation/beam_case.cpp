@@ -40,7 +40,7 @@ Overrides overrides_of(const Beam& b) {
           {"preprocess.laboratory.corner_m[1]", -3.5 * b.h},
           {"solve.shape", words(b.shape)},
           {"solve.implicit.step_s", 1.0 / b.steps},
-          {"solve.load[0].box_m", std::vector<double>{length - 0.9 * s, length, 0, depth, lift, lift + depth}},
+          {"solve.load[0].extent_m", std::vector<double>{length - 0.9 * s, 0, length, depth, lift, lift + depth}},
           {"solve.load[0].force_N", std::vector<double>{0, 0, -b.load()}}};
 }
 

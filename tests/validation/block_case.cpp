@@ -33,7 +33,7 @@ Overrides overrides_of(const Incline& c) {
           {"preprocess.box[0].extent_m[2]", west + 6},
           {"preprocess.box[0].extent_m[1]", south},
           {"preprocess.box[0].extent_m[3]", south + 6},
-          {"preprocess.box[0].top_m", static_cast<double>(c.layers)},
+          {"preprocess.box[0].extent_m[5]", static_cast<double>(c.layers)},
           {"solve.base.friction_angle_deg", c.friction}};
 }
 

@@ -15,7 +15,7 @@ namespace talus::validation {
 
 using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<std::int64_t>, std::vector<double>>;
 
-/// Key and value: "solve.implicit.step_s", "preprocess.box[0].top_m". Tables that are missing are made; the index one
+/// Key and value: "solve.implicit.step_s", "preprocess.grid.spacing_m". Tables that are missing are made; the index one
 /// past the end of an array of tables adds a table.
 using Overrides = std::vector<std::pair<std::string, Value>>;
 

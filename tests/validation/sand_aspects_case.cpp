@@ -106,9 +106,7 @@ Overrides round_column(const Sand& s) {
     const double y = (n + 0.5) / strips, east = wide * std::round(strips * std::sqrt(1 - y * y));
     const std::string box = fmt::format("preprocess.box[{}].", n);
     all = all + Overrides{{box + "name", words(fmt::format("strip {}", n + 1))},
-                          {box + "extent_m", std::vector<double>{0, n * wide, east, (n + 1) * wide}},
-                          {box + "bottom_m", 0.0},
-                          {box + "top_m", s.height}};
+                          {box + "extent_m", std::vector<double>{0, n * wide, east, (n + 1) * wide, 0, s.height}}};
   }
   return all;
 }

@@ -32,7 +32,7 @@ inline Overrides overrides_of(const Sand& s) {
           {"preprocess.laboratory.corner_m[1]", -3.5 * s.h},
           {"preprocess.box[0].extent_m[2]", s.width},
           {"preprocess.box[0].extent_m[3]", s.h},
-          {"preprocess.box[0].top_m", s.height},
+          {"preprocess.box[0].extent_m[5]", s.height},
           {"solve.wall[1].position_m", s.width},
           {"solve.wall[4].position_m", s.h},
           {"solve.end_time_s", gate_opens + s.flow_time}};

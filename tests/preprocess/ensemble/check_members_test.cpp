@@ -52,7 +52,9 @@ TEST(check_members, a_value_that_a_key_does_not_take_names_member_value_and_rang
             std::string::npos);
   EXPECT_NE(fault_of_values(one_column("preprocess.source.treshold_m", {1})).find("Did you mean \"threshold_m\""),
             std::string::npos);
-  EXPECT_NE(fault_of_values(one_column("preprocess.grid.jitter_seed", {1.5})).find("distribution = \"discrete\""),
+  EXPECT_NE(fault_of_values(one_column("preprocess.grid.points_per_cell[0]", {1.5}),
+                            std::string(scene_text) + "[preprocess.grid]\npoints_per_cell = [2, 2, 2]\n")
+                .find("distribution = \"discrete\""),
             std::string::npos);
   EXPECT_NE(fault_of_values(one_column("preprocess.coregistration.mode", {0, 1}, {"check", "aply"}))
                 .find("[ensemble] member 1: preprocess.coregistration.mode=\"aply\""),
@@ -78,10 +80,10 @@ TEST(check_members, ground_is_read_for_members_whose_ground_differs) {
   MemberTable table = one_column("solve.material.friction_angle_deg", {20, 25});
   table.columns.push_back({thickness_factor_key, {0.5, 2}, {}});
   for (const auto& ground : options_of_members(recipe, table)) EXPECT_FALSE(ground.has_value());
-  table.columns.push_back({"preprocess.grid.jitter_seed", {3, 4}, {}});
+  table.columns.push_back({"preprocess.grid.jitter", {0.3, 0.4}, {}});
   const auto ground = options_of_members(recipe, table);
   ASSERT_TRUE(ground[1].has_value());
-  EXPECT_EQ(ground[1]->grid.jitter_seed, 4);
+  EXPECT_EQ(ground[1]->grid.jitter, 0.4);
   EXPECT_EQ(ground[1]->thickness_factor, 1) << "talus-solve scales the domain";
 }
 

@@ -117,10 +117,10 @@ TEST(write_ensemble, a_member_without_a_domain_is_left_out_and_named) {
 TEST(write_ensemble, keys_without_effect_are_refused) {
   Written idle(
       "[ensemble]\nmembers = 4\n[[ensemble.vary]]\nkey = \"preprocess.source.threshold_m\"\nlow = 1.0\nhigh = 8.0\n"
-      "[[ensemble.vary]]\nkey = \"preprocess.grid.jitter_seed\"\ndistribution = \"discrete\"\nvalues = [1, 2]\n");
+      "[[ensemble.vary]]\nkey = \"preprocess.voids.fill_m2\"\ndistribution = \"discrete\"\nvalues = [1, 2]\n");
   EXPECT_NE(test::fault_of<RecipeError>([&] {
               refuse_idle_keys(idle.context.recipe, idle.plan, idle.base);
-            }).find("preprocess.grid.jitter_seed has no effect (the domain is the same with 1 and with 2"),
+            }).find("preprocess.voids.fill_m2 has no effect (the domain is the same with 1 and with 2"),
             std::string::npos);
 }
 

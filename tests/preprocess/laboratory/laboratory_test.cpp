@@ -180,8 +180,7 @@ TEST(laboratory, refuses_a_box_that_the_points_would_not_fill) {
 TEST(laboratory, refuses_boxes_without_extent_outside_the_grid_or_inside_one_another) {
   Options o = bench();
   o.box[0].top = 0;
-  EXPECT_EQ(faults_of(o),
-            "[preprocess]: box 1: bottom_m = 0, top_m = 0 (the box has no extent). top_m must be the larger\n");
+  EXPECT_EQ(faults_of(o), "[preprocess]: box 1: bottom = 0, top = 0 (the box has no extent). top must be the larger\n");
   o = bench();
   o.box[0].west = 0.5;
   EXPECT_EQ(
@@ -224,7 +223,7 @@ TEST(laboratory, refuses_lists_that_are_too_short) {
   const std::string fault = test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); });
   EXPECT_NE(fault.find("[preprocess.laboratory] cells is too long or too short (it has 2 items"), std::string::npos)
       << fault;
-  EXPECT_NE(fault.find("[[preprocess.box]] extent_m is too long or too short (it has 4 items"), std::string::npos)
+  EXPECT_NE(fault.find("[[preprocess.box]] extent_m is too long or too short (it has 6 items"), std::string::npos)
       << fault;
 }
 

@@ -176,7 +176,7 @@ TEST_P(RunMembers, leaves_out_a_member_whose_scene_the_recipe_does_not_suit) {
   // Half as thick, the third has no point in the load's box.
   MemberTable table = small_table();
   table.columns.back().values = {1, 1, 0.5, 1, 1, 1};
-  const SmallEnsemble ensemble(table, "[[solve.load]]\nbox_m = [18, 26, 4, 12, 0.6, 1]\nforce_N = [10, 0, 0]\n");
+  const SmallEnsemble ensemble(table, "[[solve.load]]\nextent_m = [18, 4, 26, 12, 0.6, 1]\nforce_N = [10, 0, 0]\n");
   EnsembleCounts counts = ensemble.counts();
   run_members(ensemble.members(), counts, {.devices = devices_for(2, GetParam())});
   EXPECT_EQ(counts.count(MemberState::counted), 5);

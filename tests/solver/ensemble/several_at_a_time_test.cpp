@@ -38,7 +38,7 @@ const std::vector<Asked> everything_asked{
     {"obstacle", "[[solve.obstacle]]\nname = \"wall\"\nlevel_set = \"wall.vdb\"\n", {}},
     {"wall", "[[solve.wall]]\naxis = \"x\"\nposition_m = 14.0\n", {}},
     {"gate", "[[solve.wall]]\naxis = \"x\"\nposition_m = 17.0\nto_s = 0.7\n", {}},
-    {"load", "[[solve.load]]\nbox_m = [18, 26, 4, 12, 0, 1]\nforce_N = [1e4, 0, 0]\n", {}},
+    {"load", "[[solve.load]]\nextent_m = [18, 4, 26, 12, 0, 1]\nforce_N = [1e4, 0, 0]\n", {}},
     {"gauge", "[[solve.gauge]]\nname = \"g\"\nat_m = [20.0, 8.0]\n", {}},
     {"voellmy", "", {{"solve.base.law", "voellmy"}}},
     {"weakening", "", {{"solve.base.law", "velocity-weakening"}}},

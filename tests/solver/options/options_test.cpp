@@ -37,11 +37,11 @@ TEST(SolveOptions, vectors_and_boxes_have_their_number_of_values) {
   EXPECT_EQ(faults("[solve]\ninitial_velocity_m_s = [0.0]"),
             "[solve] initial_velocity_m_s has 1 numbers (it is a vector: east, north, up). Give three: "
             "initial_velocity_m_s = [0.0, 0.0, 0.0]");
-  EXPECT_EQ(faults("[[solve.load]]\nbox_m = [1.0]\n[[solve.load]]\nforce_N = [1.0]"),
-            "[[solve.load]] box_m or force_N has the wrong number of values (a box has six, a force three). Give box_m "
-            "= [west, east, south, north, bottom, top] and force_N = [east, north, up]\n[[solve.load]] box_m or "
-            "force_N has the wrong number of values (a box has six, a force three). Give box_m = [west, east, south, "
-            "north, bottom, top] and force_N = [east, north, up]");
+  EXPECT_EQ(faults("[[solve.load]]\nextent_m = [1.0]\n[[solve.load]]\nforce_N = [1.0]"),
+            "[[solve.load]] extent_m or force_N has the wrong number of values (a box has six, a force three). Give "
+            "extent_m = [west, south, east, north, bottom, top] and force_N = [east, north, up]\n[[solve.load]] "
+            "extent_m or force_N has the wrong number of values (a box has six, a force three). Give extent_m = [west, "
+            "south, east, north, bottom, top] and force_N = [east, north, up]");
 }
 
 TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) {
