@@ -30,12 +30,10 @@ struct SurveyOptions {
   bool from_preprocess = false;               // difference and sigma are what talus-preprocess wrote into OUT/survey
   std::filesystem::path polygon;              // outline of the affected area
   Direction direction = Direction::vertical;  // of thickness and peak_thickness
-  bool nodata_is_zero = false;                // thickness and difference rasters: no data means no deposit, no change
   std::filesystem::path sigma;                // raster of the standard error of thickness or change [m]
   double sigma_m = 0;                         // the same, one number for all cells [m]; 0 = not known
   double correlation_length = 0;              // range within which errors are alike [m]; 0 = as the sigma raster says
-  double detection = 1.96;                    // level of detection over sigma
-  int resamples = 200;                        // of the survey, within its error
+  int resamples = 200;                        // of the survey, within its error; no key
 
   bool measures() const {
     return !(thickness.empty() && difference.empty() && after_dem.empty());
@@ -88,13 +86,13 @@ struct SurveyOptions {
     v.path("polygon", polygon, "outline of the affected area (any vector format); gives the footprint");
     v.needs(peak_thickness.empty() || polygon.empty(), {"[postprocess.survey] gives peak_thickness and polygon",
                                                         "both say what the footprint is", "Leave one of them out"});
-    v.flag("nodata_is_zero", nodata_is_zero,
-           "thickness and difference rasters: no data means no deposit (otherwise: not surveyed, left out)");
     v.needs(
         kind == ReferenceKind::survey || (sigma.empty() && !(sigma_m > 0) && !from_preprocess),
         {"[postprocess.survey] gives kind = \"model\" and the error of a survey",
          "what another model computed has no error of measurement", "Leave sigma and from_preprocess out, or kind"});
-    v.path("sigma", sigma, "raster of the standard error (1 sigma) of thickness or change [m]");
+    v.path("sigma", sigma,
+           "raster of the standard error (1 sigma) of thickness or change [m]; what is below 1.96 sigma (95 %) counts "
+           "as none");
     v.number("sigma_m", sigma_m, recipe::not_negative,
              "the same error for all cells, instead of a raster; 0: not known");
     need_one_error(v);
@@ -102,10 +100,6 @@ struct SurveyOptions {
         "correlation_length_m", correlation_length, recipe::not_negative,
         "distance within which errors are alike (range of a spherical variogram); 0: CORRELATION_LENGTH_M of the sigma "
         "raster, else every cell for itself");
-    v.number("detection", detection, recipe::not_negative,
-             "with a sigma: thickness or change below this times sigma counts as none (1.96: 95 %); 0: off");
-    v.integer("resamples", resamples, {0, 100000},
-              "with a sigma: surveys drawn within their error, for the spread of the scores; 0: none");
   }
 
  private:

@@ -134,7 +134,8 @@ void left_out(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet)
   if (share > 0.01)
     sheet.note(
         fmt::format("Warning: {:.1f} % of the simulated deposit lies where the {} has no data; it is not in the "
-                    "scores. If no data means no deposit, set nodata_is_zero.",
+                    "scores. If no data means no deposit, fill it: gdalwarp -dstnodata 0 IN.tif OUT.tif, then "
+                    "gdal_edit.py -unsetnodata OUT.tif.",
                     100 * share, scored.survey->words().noun));
 }
 

@@ -70,21 +70,19 @@ void of_scores(const ReferenceWords& words, Sheet& sheet) {
 void of_error(const Scored& scored, Sheet& sheet) {
   const auto& error = scored.survey->error;
   if (error.sigma.empty()) return;
-  if (error.detection > 0)
-    sheet.note(fmt::format("Level of detection: {} values below {:g} sigma count as none.",
-                           scored.survey->words().adjective, error.detection));
+  sheet.note(fmt::format("Level of detection: {} values below {:g} sigma count as none.",
+                         scored.survey->words().adjective, error.detection));
   sheet.note(
       "Residual over sigma: simulated - measured, before the level of detection, over the cells of the union of both "
       "deposits; "
       "reduced chi-square is the mean of its square.");
-  if (scored.options.survey.resamples > 0)
-    sheet.note(
-        "Spread: mean, standard deviation, 5 % and 95 % quantile over surveys drawn as measured + sigma times a "
-        "Gaussian random "
-        "field of spherical correlation, each scored as the survey is. Cells measured as exactly 0 stay so; for the "
-        "run-out "
-        "only deposits count that touch one of the survey. The survey holds one such error already, so the mean is not "
-        "the score.");
+  sheet.note(
+      "Spread: mean, standard deviation, 5 % and 95 % quantile over surveys drawn as measured + sigma times a "
+      "Gaussian random "
+      "field of spherical correlation, each scored as the survey is. Cells measured as exactly 0 stay so; for the "
+      "run-out "
+      "only deposits count that touch one of the survey. The survey holds one such error already, so the mean is not "
+      "the score.");
 }
 
 }  // namespace

@@ -32,14 +32,11 @@ void add_line(const Line& line, Sheet& sheet) {
 
 void add_spread(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet) {
   const auto& survey = *scored.survey;
-  const int draws = scored.options.survey.resamples;
-  if (survey.error.sigma.empty() || draws == 0)
-    return sheet.skip(
-        {"deposit_csi_sd"},
-        draws == 0 ? "resamples = 0" : fmt::format("the {}'s error (sigma) is not given", survey.words().noun));
+  if (survey.error.sigma.empty())
+    return sheet.skip({"deposit_csi_sd"}, fmt::format("the {}'s error (sigma) is not given", survey.words().noun));
   const auto all = resample(scored, simulated);
   sheet.section("Spread from the survey's error");
-  sheet.count("resamples", "surveys drawn", draws);
+  sheet.count("resamples", "surveys drawn", scored.options.survey.resamples);
   sheet.number("survey_correlation_length_m", "range of the survey's errors", "m", survey.error.correlation_length, 1);
   if (!survey.footprint_is_change)
     sheet.skip({"footprint_csi_sd"}, "the footprint is not a surveyed change, its error is not known");

@@ -42,21 +42,14 @@ void check_overlap(const fs::path& file, const Survey& survey, const RunMaps& ma
                    "Give the survey of this event, in the run's coordinates"});
 }
 
-void zero_for_nodata(std::vector<double>& values) {
-  for (double& v : values) {
-    if (std::isnan(v)) v = 0;
-  }
-}
-
-Raster read_values(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
+Raster read_values(const fs::path& file, const RunMaps& maps) {
   auto raster = read_raster(file);
   check_crs(file, raster.grid, maps.grid);
-  if (options.nodata_is_zero) zero_for_nodata(raster.values);
   return raster;
 }
 
 Raster read_thickness(const fs::path& file, const SurveyOptions& options, const RunMaps& maps) {
-  auto raster = read_values(file, options, maps);
+  auto raster = read_values(file, maps);
   to_vertical(raster, options, maps);
   return raster;
 }
@@ -114,7 +107,7 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
     read_surfaces(options, maps, survey);
   } else if (options.measures()) {
     const auto& file = options.thickness.empty() ? options.difference : options.thickness;
-    auto raster = options.thickness.empty() ? read_values(file, options, maps) : read_thickness(file, options, maps);
+    auto raster = options.thickness.empty() ? read_values(file, maps) : read_thickness(file, options, maps);
     survey.grid = raster.grid;
     survey.measured = std::move(raster.values);
     survey.inputs.push_back(file);

@@ -58,11 +58,11 @@ void read_error(const SurveyOptions& options, const RunMaps& maps, Survey& surve
   if (options.sigma.empty() && options.sigma_m == 0) return;
   auto& error = survey.error;
   error.sigma = read_sigma(options, maps, survey);
-  error.detection = options.detection;
+  error.detection = 1.96;  // 95 %
   error.correlation_length = options.correlation_length;
   if (options.correlation_length == 0 && !options.sigma.empty())
     error.correlation_length = std::max(0.0, raster_item(options.sigma, "CORRELATION_LENGTH_M").value_or(0));
-  if (error.correlation_length > 0 || options.resamples == 0) return;
+  if (error.correlation_length > 0) return;
   warn("unknown-correlation-length",
        "[postprocess.survey] The range of the survey's errors is not known: they are drawn for every cell for itself, "
        "which makes the spread of scores too small. Give correlation_length_m.");

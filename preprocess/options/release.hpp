@@ -23,9 +23,8 @@ struct ReleaseOptions {
   std::filesystem::path thickness_raster;
   std::filesystem::path polygons;
   std::string attribute = "thickness";
-  double thickness = 0;      ///< one thickness for all polygons [m]; 0: that of the attribute
-  double volume_factor = 1;  ///< of its thickness, and so of its volume [-]
-  double grow = 0;           ///< of its polygons, outwards [m]
+  double thickness = 0;  ///< one thickness for all polygons [m]; 0: that of the attribute
+  double grow = 0;       ///< of its polygons, outwards [m]
   Direction direction = Direction::vertical;
 
   /// The method declares the keys with defaults and help, and, where a thickness is `needed`, that one is given;
@@ -36,7 +35,6 @@ struct ReleaseOptions {
     v.needs(!needed || polygons.empty() || thickness != 0 || !attribute.empty(),
             fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
                   "Name the attribute that holds the thickness, or give thickness_m"));
-    v.number("volume_factor", volume_factor, recipe::positive, "its thickness, and so its volume, times this");
     v.number("grow_m", grow, recipe::any, "the polygons grown by this on all sides; negative: shrunk");
     v.needs(!needed || grow == 0 || !polygons.empty(),
             fault(place + ": grow_m is given without polygons", "a raster of thickness has no outline to grow",

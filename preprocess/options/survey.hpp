@@ -45,19 +45,15 @@ struct CoregistrationOptions {
 
 /// The keys of [preprocess.difference].
 struct DifferenceOptions {
-  double confidence = 0.95;
-  double minimum_level = 0;  ///< [m]
-  double sigma = 0;          ///< of the difference [m]; 0: learnt from stable ground
+  double sigma = 0;  ///< of the difference [m]; 0: learnt from stable ground
 
   /// The method declares the keys with defaults, help and what they need of `all` others.
   template <class All>
   void describe(recipe::Visitor& v, const All& all) {
-    v.number("confidence", confidence, recipe::Range{0.5, 0.9999}, "of the level of detection, two-sided");
-    v.number("minimum_level_m", minimum_level, recipe::not_negative, "the least level of detection in any case");
     v.number("sigma_m", sigma, recipe::not_negative,
              "standard error of the difference, the root of the sum of both models' squares; 0 = by slope, from stable "
              "ground");
-    need_second_model(v, all, sigma > 0 || minimum_level > 0, "an error or level in [preprocess.difference]");
+    need_second_model(v, all, sigma > 0, "difference.sigma_m");
   }
 };
 

@@ -84,7 +84,7 @@ class BlockFiles {
         const double d = block.difference.values[i], sigma = block.sigma.values[i];
         if (std::isnan(d)) continue;
         raw.add(d, sigma);
-        if (!(std::abs(d) > survey_.detection.level(sigma))) continue;
+        if (!(std::abs(d) > level_of_detection(sigma))) continue;
         believed.add(d, sigma);
         (d > 0 ? rise_ : fall_).add(std::abs(d), block.before.values[i] + d / 2);
       }
@@ -150,7 +150,7 @@ void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* p
   };
   line("difference, all cells", budgets.raw);
   line(fmt::format("difference beyond its level of detection ({:.2f} m at least)",
-                   survey.detection.level(survey.errors.sigma(0))),
+                   level_of_detection(survey.errors.sigma(0))),
        budgets.thresholded);
   if (!prepared || !prepared->slide) return;
   for (const auto& side : prepared->slide->volumes)

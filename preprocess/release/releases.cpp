@@ -104,7 +104,6 @@ Release read_release(const ReleaseOptions& options, std::size_t item, const Rast
                   options.polygons.empty() ? from_raster(options, bed.grid) : from_polygons(options, bed.grid)};
   refuse_nothing(release.thickness, file);
   refuse_release_on_nodata(release.thickness, bed, file);
-  for (double& thickness : release.thickness.values) thickness *= options.volume_factor;
   if (options.direction == Direction::slope_normal) {
     const std::vector<double> cosine = slope_cosine(bed);
     for (std::size_t i = 0; i < cosine.size(); ++i) release.thickness.values[i] /= cosine[i];

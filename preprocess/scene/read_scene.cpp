@@ -58,9 +58,8 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
   SurveyedSlide& slide = *of_slide;
   if (!survey.source.empty())
     survey.source = read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
-  Source source =
-      find_source({surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(survey, slide.sigma)},
-                  options.source);
+  Source source = find_source(
+      {surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(slide.sigma)}, options.source);
   const Change change = change_between(survey, {surfaces[0], surfaces[1]}, options.deposit, slide);
   judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
               {options.before_dem.string(), options.after_dem.string(), survey.applied});

@@ -105,7 +105,7 @@ std::string outside_words(const SurveyedSlide& slide) {
 
 Change change_between(const Survey& survey, const SurveyPair& surfaces, const DepositOptions& given,
                       const SurveyedSlide& slide) {
-  const std::vector<double> noise = levels_of(survey, slide.sigma);
+  const std::vector<double> noise = levels_of(slide.sigma);
   Change change{surfaces.after, noise, noise};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
     change.rise.values[i] -= surfaces.before.values[i];

@@ -32,7 +32,10 @@ Block block_of(const Elevation& before, const Elevation& after, const MapGrid& p
 
 }  // namespace
 
-double Detection::level(double sigma) const { return std::max(minimum_level, quantile * sigma); }
+double level_of_detection(double sigma) {
+  constexpr double quantile = 1.9599639845400534;  // of the normal distribution
+  return std::max(0.0, quantile * sigma);
+}
 
 void BudgetSum::add(double difference, double sigma) {
   if (difference == 0) {

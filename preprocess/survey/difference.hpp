@@ -12,14 +12,9 @@
 
 namespace talus::preprocess {
 
-/// From which difference on a change is believed.
-struct Detection {
-  double minimum_level = 0;  ///< [m]; the least level in any case
-  double quantile = 1.96;    ///< of the normal distribution, two-sided: 1.96 = 95 %
-
-  /// Level of detection [m] of a cell whose difference has the standard deviation `sigma`.
-  double level(double sigma) const;
-};
+/// Level of detection [m] of a cell whose difference has the standard deviation `sigma`, at 95 %, two-sided; 0 where
+/// that is not known (NaN).
+double level_of_detection(double sigma);
 
 /// One volume with the area it stands on, and its standard error.
 struct VolumeWithError {

@@ -23,16 +23,6 @@ constexpr double noticeable_shift = 0.2;    // cells
 constexpr double well_known = 0.1;          // cells: a shift whose standard error is larger is warned of
 constexpr double noticeable_height = 0.05;  // [m]
 
-/// z with P(|normal| < z) = confidence.
-double normal_quantile(double confidence) {
-  double low = 0, high = 10;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (low + high) / 2;
-    (std::erf(middle / std::numbers::sqrt2) < confidence ? low : high) = middle;
-  }
-  return low;
-}
-
 void read_outlines(Survey& s, const Options& options) {
   if (!options.source.polygon.empty())
     s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
@@ -164,7 +154,6 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   s.after = std::move(after);
   s.grid = whole_overlap(s.before, s.after, options);
   read_outlines(s, options);
-  s.detection = {options.difference.minimum_level, normal_quantile(options.difference.confidence)};
   const double given = options.difference.sigma;
   s.errors = ErrorModel::of(given);
   if (how.mode == Alignment::off && given > 0) return s;
@@ -238,9 +227,9 @@ SurveyedSlide slide_on(const Survey& s, const Raster& before, const std::vector<
   return slide;
 }
 
-std::vector<double> levels_of(const Survey& s, const Raster& sigma) {
+std::vector<double> levels_of(const Raster& sigma) {
   std::vector<double> levels;
-  for (const double value : sigma.values) levels.push_back(s.detection.level(value));
+  for (const double value : sigma.values) levels.push_back(level_of_detection(value));
   return levels;
 }
 

@@ -23,7 +23,6 @@ struct Survey {
   Coregistration fit;
   bool applied = false;
   ErrorModel errors;
-  Detection detection;
   std::vector<MapPolygon> source, deposit;                    // outlines, where the recipe gives them
   std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
 };
@@ -65,7 +64,7 @@ SurveyedSlide slide_on(const Survey& survey, const Raster& before, const std::ve
 std::string outside_words(const SurveyedSlide& slide);
 
 /// Level of detection of every cell.
-std::vector<double> levels_of(const Survey& survey, const Raster& sigma);
+std::vector<double> levels_of(const Raster& sigma);
 
 /// Two surfaces on the same cells.
 struct SurveyPair {

@@ -70,7 +70,7 @@ Json error_of(const Survey& s) {
                        {"long_range_m", v.long_range},
                        {"lags_m", v.lags},
                        {"semivariance", v.semivariance}};
-  json["level_of_detection_m"] = s.detection.level(s.errors.sigma(0));
+  json["level_of_detection_m"] = level_of_detection(s.errors.sigma(0));
   return json;
 }
 

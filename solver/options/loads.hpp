@@ -42,16 +42,16 @@ struct GravityOptions {
 
 /// The keys of [[solve.load]]: a force on the points that start inside a box.
 struct LoadOptions {
-  std::vector<double> box = {0, 0, 0, 0, 0, 0};  ///< west, south, east, north [m], bottom, top above the ground [m]
-  std::vector<double> force = {0, 0, 0};         ///< in all [N]
-  double ramp = 0;                               ///< time over which it grows [s]
-  double from = 0, to = 1e30;                    ///< [s]
+  std::vector<double> extent = {0, 0, 0, 0, 0, 0};  ///< west, south, east, north [m], bottom, top above the ground [m]
+  std::vector<double> force = {0, 0, 0};            ///< in all [N]
+  double ramp = 0;                                  ///< time over which it grows [s]
+  double from = 0, to = 1e30;                       ///< [s]
   /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v) {
-    v.numbers("extent_m", box, recipe::any,
+    v.numbers("extent_m", extent, recipe::any,
               "[west, south, east, north, bottom, top], the last two above the ground: points starting there");
     v.numbers("force_N", force, recipe::any, "force on them in all: east, north, up");
-    v.needs(box.size() == 6 && force.size() == 3,
+    v.needs(extent.size() == 6 && force.size() == 3,
             {"[[solve.load]] extent_m or force_N has the wrong number of values", "a box has six, a force three",
              "Give extent_m = [west, south, east, north, bottom, top] and force_N = [east, north, up]"});
     v.number("ramp_s", ramp, recipe::not_negative, "time over which it grows to its full size");

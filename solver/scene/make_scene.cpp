@@ -27,7 +27,7 @@ constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
 /// This function marks the points that start inside a load's box.
 void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
   for (std::size_t l = 0; l < options.loads.size(); ++l) {
-    const auto& b = options.loads[l].box;
+    const auto& b = options.loads[l].extent;
     double volume = 0;
     for (std::size_t p = 0; p < domain.points.size(); ++p) {
       const double x = domain.points.x[p], y = domain.points.y[p], z = domain.points.height[p];

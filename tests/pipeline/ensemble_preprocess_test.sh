@@ -38,14 +38,14 @@ test_members_differ_in_every_kind_of_key() {
   releases
   {
     echo '# one member a row'
-    printf 'preprocess.%s,' thickness_factor 'release[0].volume_factor' 'release[0].grow_m' grid.jitter \
+    printf 'preprocess.%s,' thickness_factor 'release[0].thickness_m' 'release[0].grow_m' grid.jitter \
       'release[0].direction'
     cat <<'CSV'
 solve.base.friction_angle_deg,solve.shape
-1,1,0,0.1,vertical,15,linear
-0.5,1.5,0,0.2,vertical,12.5,quadratic
-2,1,10,0.3,vertical,15,quadratic
-1,1,-10,0.3,slope-normal,18,linear
+1,4,0,0.1,vertical,15,linear
+0.5,6,0,0.2,vertical,12.5,quadratic
+2,4,10,0.3,vertical,15,quadratic
+1,4,-10,0.3,slope-normal,18,linear
 CSV
   } >members.csv
   ensemble $'design = "table"\ntable = "members.csv"'

@@ -49,13 +49,12 @@ TEST(grow, a_computed_sliding_surface_reaches_further_under_a_wider_outline) {
   EXPECT_NEAR(wider.sliding_surface->depth, 10, 1e-6);
 }
 
-TEST(grow, a_release_by_polygons_and_multiply_its_volume) {
+TEST(grow, a_release_by_polygons) {
   Scene scene;
   ReleaseOptions& release = scene.as_release();
   release.polygons = rectangle(scene);
-  release.thickness = 2;
+  release.thickness = 3;
   release.grow = -10;
-  release.volume_factor = 1.5;
   EXPECT_NEAR(scene.prepare().total.volume / (3 * area_grown(-10)), 1, 1e-9);
   release.grow = -40;
   EXPECT_NE(scene.data_fault().find("nothing is left of it with grow_m = -40"), std::string::npos);

@@ -7,7 +7,9 @@
 
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "common/map/statistics.hpp"
 #include "data_samples/terrains.hpp"
@@ -201,9 +203,8 @@ TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
 
 /// Two cells: one beyond its level, one not.
 TEST(difference, believes_what_lies_beyond_the_level_of_detection) {
-  const Detection detection{0.2, 1.96};
-  EXPECT_DOUBLE_EQ(detection.level(0.5), 0.98);
-  EXPECT_DOUBLE_EQ(detection.level(0.05), 0.2);
+  EXPECT_NEAR(std::erf(level_of_detection(0.5) / 0.5 / std::numbers::sqrt2), 0.95, 1e-12);
+  EXPECT_EQ(level_of_detection(std::numeric_limits<double>::quiet_NaN()), 0) << "not known";
 }
 
 TEST(difference, budget_adds_up_with_errors_of_independent_cells) {

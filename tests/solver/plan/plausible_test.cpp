@@ -99,7 +99,7 @@ TEST(Plausible, waves_far_slower_than_the_flow_are_refused) {
 TEST(Plausible, a_load_that_would_throw_the_mass_out_is_refused) {
   SolveOptions o;
   LoadOptions load;
-  load.box = {10, 12, 22, 36, 0, 4};
+  load.extent = {10, 12, 22, 36, 0, 4};
   load.force = {0, 0, 1e15};
   o.loads.push_back(load);
   expect_all_of(refusal_of(plausible_block(4), o), {"1e+15 N", "force_N", "strong-loads"});

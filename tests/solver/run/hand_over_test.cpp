@@ -33,7 +33,7 @@ SolveOptions pushed_block() {
   o.base.friction_angle = 25;
   o.gravity_loading_steps = 5;
   LoadOptions load;
-  load.box = {0, 0, 1000, 1000, -10, 100};
+  load.extent = {0, 0, 1000, 1000, -10, 100};
   load.force = {block_mass * push * std::cos(pushed_slope), 0, -block_mass * push * std::sin(pushed_slope)};
   load.from = push_begins;
   o.loads = {load};
