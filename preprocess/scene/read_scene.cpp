@@ -60,7 +60,7 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
     survey.source = read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
   Source source = find_source(
       {surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(slide.sigma)}, options.source);
-  const Change change = change_between(survey, {surfaces[0], surfaces[1]}, options.deposit, slide);
+  const Change change = change_between({surfaces[0], surfaces[1]}, options.deposit, slide);
   judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
               {options.before_dem.string(), options.after_dem.string(), survey.applied});
   settle_findings();

@@ -103,8 +103,7 @@ std::string outside_words(const SurveyedSlide& slide) {
                      100 * o.unbalanced() / larger_of(slide));
 }
 
-Change change_between(const Survey& survey, const SurveyPair& surfaces, const DepositOptions& given,
-                      const SurveyedSlide& slide) {
+Change change_between(const SurveyPair& surfaces, const DepositOptions& given, const SurveyedSlide& slide) {
   const std::vector<double> noise = levels_of(slide.sigma);
   Change change{surfaces.after, noise, noise};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
@@ -116,7 +115,7 @@ Change change_between(const Survey& survey, const SurveyPair& surfaces, const De
 
 void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& given, SurveyedSlide& slide) {
   const auto& [before, after, source] = surfaces;
-  const Change change = change_between(survey, {before, after}, given, slide);
+  const Change change = change_between({before, after}, given, slide);
   const std::vector<Region> sure = sure_regions(change, given);
   const std::vector<char> moved = grown_slide({before, source}, sure, given),
                           deposit = deposit_cells(change, survey.deposit, moved, given.polygon);

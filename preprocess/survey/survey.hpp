@@ -72,8 +72,7 @@ struct SurveyPair {
 };
 
 /// After less before, with what of it is believed.
-Change change_between(const Survey& survey, const SurveyPair& surfaces, const DepositOptions& given,
-                      const SurveyedSlide& slide);
+Change change_between(const SurveyPair& surfaces, const DepositOptions& given, const SurveyedSlide& slide);
 
 /// Both surfaces, and the source's thickness on the same cells.
 struct SlideSurfaces {

@@ -77,7 +77,7 @@ t = h5py.File("out/members.h5")
 a, w = t["slides"].attrs, t["slides/windows"][2]
 west, south, cell = a["west_m"] + w[0] * a["cell_m"], a["south_m"] + w[1] * a["cell_m"], a["cell_m"]
 text = open("recipe.toml").read().replace("[preprocess.grid]\n", "[[preprocess.release]]\n"
-    "polygons = \"areas.geojson\"\nwhere = \"name = 'east'\"\nthickness_m = 4.0\n\n[preprocess.grid]\n"
+    "polygons = \"areas.geojson|subset=name = 'east'\"\nthickness_m = 4.0\n\n[preprocess.grid]\n"
     f"extent_m = [{west}, {south}, {west + w[2] * cell}, {south + w[3] * cell}]\n")
 open("recipe.toml", "w").write(text)
 PYTHON
