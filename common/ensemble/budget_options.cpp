@@ -43,21 +43,12 @@ void OwnChange::describe(recipe::Visitor& v) {
 
 void BudgetOptions::describe(recipe::Visitor& v) {
   v.names("leave_out", leave_out, names_of_rows(), "rows that are not made");
-  const auto differs = [&](double factor, const char* key) {
-    v.needs(factor != 1, {fmt::format("[ensemble.budget] {} = 1", key), "the other run would be the same",
-                          "Give another factor, or leave the row out with leave_out"});
-  };
   v.number("cell_factor", cell_factor, recipe::Range{0.1, 10}, "row cells: sides of the other cells over the run's");
-  differs(cell_factor, "cell_factor");
-  v.number("step_factor", step_factor, recipe::Range{0.01, 1, false, true},
-           "row step: length of the other steps over the run's");
-  v.number("modulus_factor", modulus_factor, recipe::Range{0.01, 100},
-           "row modulus: Young's modulus of the other run over the run's");
-  differs(modulus_factor, "modulus_factor");
+  v.needs(cell_factor != 1, {"[ensemble.budget] cell_factor = 1", "the other run would be the same",
+                             "Give another factor, or leave the row out with leave_out"});
   v.number("friction_doubt", friction_doubt, recipe::Range{0, 1, true, true},
-           "rows friction and strength: share by which a coefficient of friction may be wrong, either way");
-  v.optional_number("friction_doubt_deg", friction_doubt_deg, recipe::Range{0, 45, true, true},
-                    "the same as an angle, in the place of friction_doubt");
+           "rows friction and strength: share by which a coefficient of friction, of an angle its tangent, may be "
+           "wrong, either way");
   v.number("drag_doubt", drag_doubt, recipe::Range{0, 1, true, true},
            "row drag: share by which the drag of the bed may be wrong, either way");
   v.integer("survey_draws", survey_draws, {1, 100},

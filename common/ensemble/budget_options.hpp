@@ -4,7 +4,6 @@
 // their deposits differ says how sure the run is.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,15 +54,12 @@ struct OwnChange {
 
 /// The keys of [ensemble.budget].
 struct BudgetOptions {
-  std::vector<std::string> leave_out;        ///< names of rows
-  double cell_factor = 2;                    ///< sides of the other cells over those of the run
-  double step_factor = 0.5;                  ///< length of the other steps over that of the run's
-  double modulus_factor = 2;                 ///< Young's modulus over that of the run
-  double friction_doubt = 0.1;               ///< of a coefficient of friction, as a share of it
-  std::optional<double> friction_doubt_deg;  ///< the same as an angle; takes its place [deg]
-  double drag_doubt = 0.3;                   ///< of the drag, as a share of it
-  int survey_draws = 2;                      ///< members with an error of the survey each
-  std::vector<OwnChange> changes;            ///< [[ensemble.budget.run]]
+  std::vector<std::string> leave_out;  ///< names of rows
+  double cell_factor = 2;              ///< sides of the other cells over those of the run
+  double friction_doubt = 0.1;         ///< of a coefficient of friction, or of an angle's tangent, as a share of it
+  double drag_doubt = 0.3;             ///< of the drag, as a share of it
+  int survey_draws = 2;                ///< members with an error of the survey each
+  std::vector<OwnChange> changes;      ///< [[ensemble.budget.run]]
   void describe(recipe::Visitor& v);
   /// The method adds the faults of a budget without changes, and of members that share a name.
   void check(std::vector<Fault>& faults) const;

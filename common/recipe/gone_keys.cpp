@@ -22,6 +22,11 @@ constexpr GoneKeys gone_keys[] = {
     {"budget",
      "Give its keys in [ensemble.budget], with design = \"budget\" in [ensemble]; seed and elevation_error are "
      "keys of [ensemble]"},
+    {"ensemble.budget.friction_doubt_deg",
+     "Give friction_doubt, a share of the tangent: 0.1 of 20 degrees is 1.9 degrees"},
+    {"ensemble.budget.modulus_factor step_factor",
+     "Leave it out; the modulus is doubled, steps are halved. Add [[ensemble.budget.run]] with another number of your "
+     "own"},
     {"postprocess.animation", "Put \"mp4\" or \"gif\" into outputs of [postprocess]"},
     {"postprocess.avaframe avaframe_format", "Put \"avaframe-tif\" or \"avaframe-asc\" into outputs of [postprocess]"},
     {"postprocess.nodata_zero", "Convert the map where a tool needs that: gdalwarp -dstnodata 0 IN.tif OUT.tif"},

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,6 +18,9 @@ namespace talus::solver {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
+
+constexpr double step_factor = 0.5;   // of the row of steps, over the run's
+constexpr double modulus_factor = 2;  // of the row of the stiffness, over the run's
 
 /// Numbers of the bed that are friction, as angles or coefficients.
 constexpr std::string_view friction_angles[] = {"friction_angle_deg", "stop_angle_deg", "steepest_angle_deg",
@@ -68,26 +70,15 @@ std::string changed_words(const Variation& one, std::size_t first) {
 /// Friction that is wrong by its doubt, one way.
 class OtherFriction {
  public:
-  OtherFriction(const BudgetOptions& budget, bool more)
-      : sign_(more ? 1 : -1), share_(budget.friction_doubt), degrees_(budget.friction_doubt_deg) {}
+  OtherFriction(const BudgetOptions& budget, bool more) : sign_(more ? 1 : -1), share_(budget.friction_doubt) {}
 
-  double angle(double deg) const {
-    if (degrees_) return std::max(0.0, deg + sign_ * *degrees_);
-    return std::atan((1 + sign_ * share_) * std::tan(deg * degree)) / degree;
-  }
-  double coefficient(double mu) const {
-    if (!degrees_) return (1 + sign_ * share_) * mu;
-    return std::tan(angle(std::atan(mu) / degree) * degree);
-  }
-  /// "10 % less", "2 deg more".
-  std::string words() const {
-    const std::string size = degrees_ ? fmt::format("{:g} deg", *degrees_) : fmt::format("{:g} %", 100 * share_);
-    return size + (sign_ > 0 ? " more" : " less");
-  }
+  double angle(double deg) const { return std::atan(coefficient(std::tan(deg * degree))) / degree; }
+  double coefficient(double mu) const { return (1 + sign_ * share_) * mu; }
+  /// "10 % less".
+  std::string words() const { return fmt::format("{:g} % {}", 100 * share_, sign_ > 0 ? "more" : "less"); }
 
  private:
   double sign_, share_;
-  std::optional<double> degrees_;
 };
 
 /// What a recipe with such options would be refused for.
@@ -186,22 +177,22 @@ void Variations::own(Variation& one, const std::string& name) const {
 void Variations::step(Variation& one, bool) const {
   const StepAbilities able = abilities_of(base_.integrator);
   if (able.obey_cfl) {
-    one.options.cfl *= budget_.step_factor;
-    one.options.largest_step *= budget_.step_factor;
+    one.options.cfl *= step_factor;
+    one.options.largest_step *= step_factor;
     one.values.push_back(set_to("solve.cfl", one.options.cfl));
     one.values.push_back(set_to("solve.largest_step_s", one.options.largest_step));
   }
   if (able.solve_systems) {
-    one.options.implicit.step *= budget_.step_factor;
+    one.options.implicit.step *= step_factor;
     one.values.push_back(set_to("solve.implicit.step_s", one.options.implicit.step));
   }
-  one.words = fmt::format("steps {:g} times as long", budget_.step_factor);
+  one.words = fmt::format("steps {:g} times as long", step_factor);
 }
 
 void Variations::modulus(Variation& one, bool) const {
   if (!base_.material.stiffness_is_free()) return;
   const auto stiffen = [&](MaterialOptions& material, const std::string& table) {
-    material.youngs_modulus *= budget_.modulus_factor;
+    material.youngs_modulus *= modulus_factor;
     one.values.push_back(set_to(table + ".youngs_modulus_Pa", material.youngs_modulus));
   };
   stiffen(one.options.material, "solve.material");

@@ -103,7 +103,8 @@ test_a_survey_without_a_known_error_is_named() {
 }
 
 test_what_only_a_member_needs_is_accepted_for_something() {
-  budget 'leave_out = ["cells", "survey", "strength", "friction", "transfer", "step"]' 'modulus_factor = 0.01' \
+  budget 'leave_out = ["cells", "survey", "strength", "friction", "transfer", "step", "modulus"]' \
+    '[[ensemble.budget.run]]' 'name = "soft"' 'set = ["solve.material.youngs_modulus_Pa=1e5"]' \
     '[[ensemble.budget.run]]' 'name = "thrown"' 'set = ["solve.initial_velocity_m_s=[150.0, 0.0, 0.0]"]'
   sed -i 's/^end_time_s.*/end_time_s = 1.0\naccept = ["weight-strain", "strong-loads"]/' recipe.toml
   expect_exit 0 preprocess

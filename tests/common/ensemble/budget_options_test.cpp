@@ -43,8 +43,8 @@ TEST(BudgetOptions, refuse_what_no_row_is_and_what_changes_nothing) {
   expect_refused(heading + "leave_out = [\"cell\"]\n", "cell");
   expect_refused(heading + "cells = 2\n", "unknown key");
   expect_refused(heading + "cell_factor = 1.0\n", "the other run would be the same");
-  expect_refused(heading + "modulus_factor = 1.0\n", "the other run would be the same");
-  expect_refused(heading + "step_factor = 1.0\n", "step_factor");
+  expect_refused(heading + "modulus_factor = 3.0\n", "the modulus is doubled");
+  expect_refused(heading + "step_factor = 0.1\n", "steps are halved");
   expect_refused(heading + "[ensemble.elevation_error]\nterrain_deviation_m = 1.0\n",
                  "[ensemble.elevation_error] range_m is missing");
   std::string all;

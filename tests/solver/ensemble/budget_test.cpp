@@ -226,10 +226,13 @@ TEST(BudgetOwnRuns, that_set_what_cannot_be_are_refused_by_name) {
   }
 }
 
-TEST(BudgetVariations, take_a_doubt_in_degrees_in_place_of_a_share) {
-  const BudgetScene scene(heap_recipe() + budget_table + "friction_doubt_deg = 2.0\n", small_heap());
-  EXPECT_EQ(scene.options_named("friction-less").base.friction_angle, 10);
-  EXPECT_EQ(scene.options_named("friction-more").base.friction_angle, 14);
+TEST(BudgetVariations, change_the_tangent_of_an_angle_by_the_share_in_doubt) {
+  const BudgetScene scene(heap_recipe() + budget_table + "friction_doubt = 0.2\n", small_heap());
+  const auto tangent = [&](const char* name) {
+    return std::tan(scene.options_named(name).base.friction_angle * degree);
+  };
+  EXPECT_NEAR(tangent("friction-less"), 0.8 * std::tan(12 * degree), 1e-12);
+  EXPECT_NEAR(tangent("friction-more"), 1.2 * std::tan(12 * degree), 1e-12);
 }
 
 TEST(BudgetVariations, change_rasters_of_the_bed_where_they_have_values) {
