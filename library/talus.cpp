@@ -10,7 +10,6 @@
 
 #include "common/domain/threads.hpp"
 #include "common/ensemble/options.hpp"
-#include "common/ensemble/slide_options.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
@@ -80,7 +79,7 @@ void take_bodies(const Site& site, solver::SolveOptions& options) {
 /// The options of a recipe for one run, with what the site has in memory.
 solver::SolveOptions options_of(const Site& site, const recipe::Recipe& recipe) {
   auto options = solver::with_preset(recipe.read<solver::SolveOptions>("solve"));
-  if (ensemble_of(recipe).on() || slides_of(recipe).on() || options.stability.factor_of_safety)
+  if (ensemble_of(recipe).on() || options.stability.factor_of_safety)
     throw RecipeError({"a plan with [ensemble], [slides] or factor_of_safety", "it is of one run in time",
                        "Leave the tables out, or run talus-solve"});
   take_bodies(site, options);

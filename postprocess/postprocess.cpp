@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/options.hpp"
 #include "common/ensemble/slide_options.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/dataset_files.hpp"

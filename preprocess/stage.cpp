@@ -129,23 +129,22 @@ void look_at_ensemble(const StageContext& context, EnsemblePlan& plan, const Ens
   refuse_idle_keys(context.recipe, plan, base);
 }
 
-/// The [preprocess] and, where there are any, the [slides] or the [ensemble] of a recipe, as they are used.
+/// The [preprocess] and, where there are any, the [slides] and the [ensemble] of a recipe, as they are used.
 std::string used_tables(const recipe::Recipe& recipe, bool marked) {
   const SlideOptions slides = slides_of(recipe);
   const auto options = slides.on() ? shared_options(recipe, slides) : recipe.read<Options>("preprocess");
   const EnsembleOptions ensemble = ensemble_of(recipe);
-  std::string text =
-      marked ? recipe::to_used_toml(options, "preprocess") : recipe::to_toml(options, "preprocess", false);
-  if (slides.on())
-    return text + "\n" + (marked ? recipe::to_used_toml(slides, "slides") : recipe::to_toml(slides, "slides", false));
-  if (ensemble.on())
-    text += "\n" + (marked ? recipe::to_used_toml(ensemble, "ensemble") : recipe::to_toml(ensemble, "ensemble", false));
+  const auto used = [&](const auto& of, const char* table) {
+    return marked ? recipe::to_used_toml(of, table) : recipe::to_toml(of, table, false);
+  };
+  std::string text = used(options, "preprocess");
+  if (slides.on()) text += "\n" + used(slides, "slides");
+  if (ensemble.on()) text += "\n" + used(ensemble, "ensemble");
   return text;
 }
 
 /// Many slides over one model, each with a domain of its own.
 void run_slides(StageContext& context) {
-  ensemble_of(context.recipe);  // refuses [ensemble] besides
   const SlidesMade made = make_slides(context);
   if (context.check_only) return;
   write_used_recipe(context, stage(), used_tables(context.recipe, true), made.inputs, made.facts);

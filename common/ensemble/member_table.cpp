@@ -200,4 +200,11 @@ MemberTable read_member_table(const std::filesystem::path& path) {
   return table;
 }
 
+void judge_members(const recipe::Recipe& recipe, const std::filesystem::path& file, const MemberTable& table) {
+  for (const auto& [name, mark] : {std::pair{"ensemble", recipe_of_members}, {"slides", recipe_of_slides}})
+    judge_maker(
+        recipe,
+        {.file = file, .table = name, .mark = fact(table.provenance, mark), .program = "talus-preprocess", .key = ""});
+}
+
 }  // namespace talus

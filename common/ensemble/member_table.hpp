@@ -62,6 +62,7 @@ struct MemberTable {
 
 /// Names of facts of a table of members.
 inline constexpr const char* recipe_of_members = "recipe.ensemble";           ///< mark of the table that drew them
+inline constexpr const char* recipe_of_slides = "recipe.slides";              ///< and of the one that lists slides
 inline constexpr const char* elevation_error_of_members = "elevation_error";  ///< in words, where there is one
 inline constexpr const char* base_domain_id = "domain.id";                    ///< of the domain that they differ from
 
@@ -70,5 +71,8 @@ void write_member_table(const std::filesystem::path& file, const MemberTable& ta
 
 /// Reads it back. Throws DataError: missing, damaged, not a table of members, or holding what cannot be.
 MemberTable read_member_table(const std::filesystem::path& file);
+
+/// Refuses (DataError) a table in `file` that another [ensemble] or [slides] made.
+void judge_members(const recipe::Recipe& recipe, const std::filesystem::path& file, const MemberTable& table);
 
 }  // namespace talus

@@ -41,6 +41,13 @@ void thresholds(recipe::Visitor& v, std::string_view key, std::vector<double>& v
                           "each threshold is counted once, from the smallest", "Write them in order"});
 }
 
+/// Whether `keep` takes a word: a number as members are counted, or what is kept of all of them.
+bool is_kept_word(const std::string& word) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const bool is_number = std::ranges::all_of(word, is_digit) && (word == "0" || !word.starts_with('0'));
+  return (is_number && !word.empty() && word.size() < 10) || word == "all" || word == "deposits";
+}
+
 /// What the rules of one [[ensemble.vary]] are written with.
 class VaryRules {
  public:
@@ -147,14 +154,6 @@ void ThresholdOptions::describe(recipe::Visitor& v) {
   thresholds(v, "arrival_s", arrival, "times: how many members arrive before each is counted");
 }
 
-void MemberRunOptions::describe_runs(recipe::Visitor& v, const std::string& member) {
-  v.number("failed_share", failed_share, recipe::fraction, "share of the " + member + "s that may fail");
-  v.integers("keep", keep, {0, most_members}, member + "s, counted from 0, whose whole run is kept");
-  v.flag("keep_all", keep_all, "every " + member + "'s whole run is kept");
-  v.number("save_interval_s", save_interval, recipe::positive,
-           "wall time after which finished " + member + "s are saved, for --restart after a kill");
-}
-
 void EnsembleOptions::describe(recipe::Visitor& v) {
   v.integer("members", members, {0, most_members}, "number of runs; 0: one run, no ensemble");
   recipe::choice(
@@ -167,16 +166,21 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
        {design_name(Design::one_at_a_time), Design::one_at_a_time},
        {design_name(Design::sensitivity), Design::sensitivity},
        {design_name(Design::table), Design::table},
-       {design_name(Design::budget), Design::budget}},
+       {design_name(Design::budget), Design::budget},
+       {design_name(Design::slides), Design::slides}},
       "how the members are drawn; full-grid, one-at-a-time, table and budget give their number themselves, and "
       "sensitivity takes the largest number up to members that it can; budget: the recipe and single changes of it, "
-      "members and [[ensemble.vary]] being left aside");
+      "members and [[ensemble.vary]] being left aside; slides: those of [slides], the default beside that table");
   v.integer("levels", levels, {2, 1000}, "full-grid, one-at-a-time: quantiles of each key");
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
   v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
-  describe_runs(v, "member");
-  v.flag("keep_deposits", keep_deposits,
-         "keep each member's map of the deposit's thickness: members.csv has its RMSE against the survey then");
+  v.number("failed_share", failed_share, recipe::fraction, "share of the members that may fail");
+  v.names("keep", keep, {},
+          "members whose whole run is kept, counted from 0: \"17\"; \"all\"; \"deposits\": of each the deposit's "
+          "thickness, for its RMSE in members.csv");
+  for (const std::string& word : keep)
+    v.needs(is_kept_word(word), {fmt::format("[ensemble] keep holds \"{}\"", word), "nothing of that name is kept",
+                                 "Give numbers of members, counted from 0 (\"17\"), \"all\" or \"deposits\""});
   recipe::table(v, "thresholds", thresholds, "what the probability maps count");
   recipe::table(v, "elevation_error", elevation_error, "the error of the elevation models, another field each member");
   recipe::table(v, "budget", budget, "design = \"budget\": which changes are made, and how large they are");
@@ -186,7 +190,7 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
 
 void EnsembleOptions::check(std::vector<Fault>& faults) const {
   if (is_budget()) return budget.check(faults);
-  if (!on()) return;
+  if (!on() || design == Design::slides) return;
   if (vary.empty() && !elevation_error.acts() && design != Design::table)
     faults.push_back({"[ensemble] with nothing that varies", "all members would be the same run",
                       "Add [[ensemble.vary]], or [ensemble.elevation_error]"});
@@ -224,27 +228,50 @@ const char* design_name(Design design) {
   return "table";
 }
 
+Fault EnsembleOptions::too_many_failed(const std::string& what, const std::string& first) const {
+  if (is_budget())
+    return {what, "none is left to compare: " + first,
+            "Mend what makes them fail, or leave their rows out (leave_out)"};
+  return {what, fmt::format("[ensemble] failed_share allows {:g} %: {}", 100 * failed_share, first),
+          "Mend what makes them fail, narrow the distributions, or raise failed_share"};
+}
+
+bool EnsembleOptions::keeps(const std::string& word) const { return std::ranges::find(keep, word) != keep.end(); }
+
+void EnsembleOptions::check_kept(std::int64_t count) const {
+  for (const std::string& word : keep)
+    if (word != "all" && word != "deposits" && std::stoll(word) >= count)
+      throw RecipeError({"[ensemble] keep names member " + word, fmt::format("there are {}, counted from 0", count),
+                         "Name one that is there"});
+}
+
 namespace {
 
-EnsembleOptions as_members(const SlideOptions& slides) {
-  EnsembleOptions o;
-  o.members = 1;  // how many there are the outlines say
-  o.design = Design::slides;
-  static_cast<MemberRunOptions&>(o) = slides;
-  o.thresholds = slides.thresholds;
-  return o;
-}
+/// [ensemble] beside [slides]: each threshold takes two maps of the whole model.
+struct EnsembleOfSlides : EnsembleOptions {
+  EnsembleOfSlides() {
+    design = Design::slides;
+    thresholds = {.thickness = {0.1, 0.5, 1}, .deposit = {}, .speed = {}, .pressure = {3, 30}, .arrival = {}};
+  }
+};
 
 }  // namespace
 
 EnsembleOptions ensemble_of(const recipe::Recipe& recipe) {
-  auto ensemble = recipe.read<EnsembleOptions>("ensemble");
-  const SlideOptions slides = slides_of(recipe);
-  if (!slides.on()) return ensemble;
-  if (ensemble.on())
-    throw RecipeError({"[slides] beside [ensemble]", "either each slide is a member, or each draw of one slide",
-                       "Leave one of them out, or set ensemble.members = 0"});
-  return as_members(slides);
+  if (!slides_of(recipe).on()) {
+    auto ensemble = recipe.read<EnsembleOptions>("ensemble");
+    if (ensemble.design == Design::slides)
+      throw RecipeError({"[ensemble] design = \"slides\" without [slides]", "nothing says where the slides are",
+                         "Add [slides] with outlines, or take another design"});
+    return ensemble;
+  }
+  EnsembleOptions ensemble = recipe.read<EnsembleOfSlides>("ensemble");
+  if (ensemble.design != Design::slides || ensemble.members > 0 || !ensemble.table.empty() || !ensemble.vary.empty() ||
+      !ensemble.correlation.empty() || ensemble.elevation_error.acts())
+    throw RecipeError({"[slides] beside [ensemble] with members of its own",
+                       "either each slide is a member, or each draw of one slide",
+                       "Leave [slides] out, or give failed_share, keep and thresholds alone in [ensemble]"});
+  return ensemble;
 }
 
 }  // namespace talus

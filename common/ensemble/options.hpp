@@ -81,24 +81,16 @@ struct ThresholdOptions {
   void describe(recipe::Visitor& v);
 };
 
-/// What [ensemble] and [slides] alike say of the runs of their members.
-struct MemberRunOptions {
-  double failed_share = 0.05;  ///< of the members that may fail before the ensemble does; of a budget any may
-  std::vector<int> keep;       ///< members whose whole run is kept
-  bool keep_all = false;
-  double save_interval = 60;  ///< wall time after which what is finished is saved [s]
-  /// `member`: what the recipe calls one: "member", "slide".
-  void describe_runs(recipe::Visitor& v, const std::string& member);
-};
-
 /// The keys of [ensemble].
-struct EnsembleOptions : MemberRunOptions {
-  int members = 0;  ///< 0: no ensemble
+struct EnsembleOptions {
+  int members = 0;  ///< 0: no ensemble, unless the design gives their number
   Design design = Design::sobol;
-  int levels = 5;              ///< of full_grid and one_at_a_time
-  bool keep_deposits = false;  ///< each member's map of the deposit's thickness
+  int levels = 5;  ///< of full_grid and one_at_a_time
   int seed = 1;
   std::filesystem::path table;  ///< of design = "table"
+  double failed_share = 0.05;   ///< of the members that may fail before the ensemble does; of a budget all but one may
+  std::vector<std::string>
+      keep;  ///< members whose whole run is kept: "12", "all"; "deposits": of each the deposit's map
   ThresholdOptions thresholds;
   ElevationErrorOptions elevation_error;
   BudgetOptions budget;
@@ -109,15 +101,23 @@ struct EnsembleOptions : MemberRunOptions {
   void check(std::vector<Fault>& faults) const;
 
   /// Whether the recipe asks for an ensemble.
-  bool on() const { return members > 0 || is_budget(); }
+  bool on() const { return members > 0 || is_budget() || design == Design::slides; }
   /// Whether its members are single changes of the recipe.
   bool is_budget() const { return design == Design::budget; }
   /// The number of members that may fail before the ensemble does, of so many.
-  double may_fail(std::int64_t of) const { return (is_budget() ? 1 : failed_share) * static_cast<double>(of); }
+  double may_fail(std::int64_t of) const {
+    return is_budget() ? static_cast<double>(of - 1) : failed_share * static_cast<double>(of);
+  }
+  /// The fault of more that failed; `first` says why the first did.
+  Fault too_many_failed(const std::string& what, const std::string& first) const;
+  /// Whether `keep` has a word: "all", "deposits", or the number of a member.
+  bool keeps(const std::string& word) const;
+  /// Refuses (RecipeError) a `keep` that names a member beyond so many.
+  void check_kept(std::int64_t count) const;
 };
 
-/// The [ensemble] of a recipe; members = 0 where it has none. Of a recipe with [slides], what that table says of the
-/// same, with design = Design::slides. Throws RecipeError: both are given.
+/// The [ensemble] of a recipe; not on where it has none. Beside [slides] its design is Design::slides, with fewer
+/// thresholds where the recipe gives none. Throws RecipeError: [slides] beside members that are drawn.
 EnsembleOptions ensemble_of(const recipe::Recipe& recipe);
 
 }  // namespace talus

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "common/ensemble/options.hpp"
 #include "common/recipe/recipe.hpp"
 
 namespace talus {
@@ -24,9 +23,8 @@ struct SlideKeyOptions {
 /// A slide that the recipe itself lists.
 struct ScenarioOptions {
   std::string name;
-  std::filesystem::path outline;                ///< its polygons, a vector source
-  double thickness = 0, depth = 0, volume = 0;  ///< [m], [m], [m3]; 0: not given
-  std::vector<std::string> set;                 ///< "key=value" of the recipe
+  std::filesystem::path outline;  ///< its polygons, a vector source
+  std::vector<std::string> set;   ///< "key=value" of the recipe
   void describe(recipe::Visitor& v);
 };
 
@@ -34,14 +32,12 @@ struct ScenarioOptions {
 enum class SlideAtEdge { flag, fail };
 
 /// The keys of [slides].
-struct SlideOptions : MemberRunOptions {
+struct SlideOptions {
   std::filesystem::path outlines;  ///< a vector source of polygons, a slide each
-  std::string name_from;           ///< attributes; empty: not given
-  std::string thickness_from, depth_from, volume_from;
-  std::optional<double> margin;  ///< around the outline [m]
-  double reach_angle = 11;       ///< of the window where no margin is given [degrees]
+  std::string name_from;           ///< attribute; empty: not given
+  std::optional<double> margin;    ///< around the outline [m]
+  double reach_angle = 11;         ///< of the window where no margin is given [degrees]
   SlideAtEdge at_edge = SlideAtEdge::flag;
-  ThresholdOptions thresholds{.thickness = {0.1, 0.5, 1}, .deposit = {}, .speed = {}, .pressure = {3, 30}, .arrival{}};
   std::vector<SlideKeyOptions> vary;
   std::vector<ScenarioOptions> scenario;
   void describe(recipe::Visitor& v);
@@ -54,8 +50,5 @@ struct SlideOptions : MemberRunOptions {
 
 /// The [slides] of a recipe; not on where it has none. Throws RecipeError.
 SlideOptions slides_of(const recipe::Recipe& recipe);
-
-/// The name of the table by which a recipe has members: "slides" or "ensemble".
-const char* members_table(const recipe::Recipe& recipe);
 
 }  // namespace talus

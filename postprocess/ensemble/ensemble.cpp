@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/names.hpp"
-#include "common/ensemble/slide_options.hpp"
 #include "common/stage/identity.hpp"
 
 namespace talus::postprocess {
@@ -91,11 +90,7 @@ Ensemble read_ensemble(const StageContext& context) {
   Ensemble ensemble;
   ensemble.files = ensemble_files(context.out);
   ensemble.table = read_member_table(ensemble.files.front());
-  judge_maker(context.recipe, {.file = ensemble.files.front(),
-                               .table = members_table(context.recipe),
-                               .mark = fact(ensemble.table.provenance, recipe_of_members),
-                               .program = "talus-preprocess",
-                               .key = ""});
+  judge_members(context.recipe, ensemble.files.front(), ensemble.table);
   ensemble.counts = read_parts({ensemble.files.begin() + 1, ensemble.files.end()});
   judge_counts(context, ensemble.files[1], ensemble);
   if (ensemble.counted() == 0)

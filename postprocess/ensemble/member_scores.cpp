@@ -115,7 +115,7 @@ std::vector<RowColumn> Scores::columns() {
   if (std::ranges::any_of(counts_.deposit_thickness, [](const KeptThickness& one) { return one.kept(); }))
     add(thickness_);
   else
-    log_info("the members' deposits were not kept: no thickness_rmse_m ([ensemble] keep_deposits = true keeps them)");
+    log_info("the members' deposits were not kept: no thickness_rmse_m ([ensemble] keep = [\"deposits\"] keeps them)");
   return columns;
 }
 

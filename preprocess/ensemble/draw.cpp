@@ -136,10 +136,7 @@ MemberTable draw_members(const EnsembleOptions& o) {
       draw_sample(table, o, marginals);
   }
   table.own_domain.assign(static_cast<std::size_t>(table.count), 0);
-  for (const int member : o.keep)
-    if (member >= table.count)
-      refuse_drawing(fmt::format("keep names member {}", member),
-                     fmt::format("there are {}, counted from 0", table.count), "Name one that is there");
+  o.check_kept(table.count);
   return table;
 }
 

@@ -245,10 +245,9 @@ void MemberDomains::say_failures() const {
                                              plan_.options.is_budget() ? "leaves them out" : "counts them as failed"));
   if (too_many_failed())
     throw DataError(
-        Fault{fmt::format("[ensemble]: {} members have no domain, the first is {}", said, failures_.begin()->first),
-              fmt::format("failed_share allows {:g} of {}: {}", plan_.options.failed_share, plan_.table.count,
-                          failures_.begin()->second),
-              "Mend what makes them fail, narrow the distributions, or raise failed_share"});
+        plan_.options.too_many_failed(fmt::format("[ensemble]: {} of {} members have no domain, the first is {}", said,
+                                                  plan_.table.count, failures_.begin()->first),
+                                      failures_.begin()->second));
 }
 
 void MemberDomains::work(std::int64_t member) {
@@ -324,7 +323,8 @@ std::int64_t write_ensemble(StageContext& context, EnsemblePlan& plan, const Ens
   }
   table.provenance = {{"version", version()},
                       {"command", context.command_line},
-                      {recipe_of_members, recipe_mark(context.recipe, table.slides ? "slides" : "ensemble")},
+                      {recipe_of_members, recipe_mark(context.recipe, "ensemble")},
+                      {recipe_of_slides, recipe_mark(context.recipe, "slides")},
                       {base_domain_id, of_base}};
   if (plan.errors) table.provenance.emplace_back(elevation_error_of_members, plan.errors->words());
   write_member_table(paths.members(), table);

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/error.hpp"
+#include "common/recipe/values.hpp"
 #include "preprocess/slides/slides.hpp"
 
 namespace talus::preprocess {
@@ -47,15 +48,14 @@ const FeatureValue* attribute_of(const PolygonFeature& feature, const std::strin
   return nullptr;
 }
 
-/// The positive number that an attribute holds; 0 with a fault noted where it holds none.
-double amount_of(const PolygonFeature& feature, const std::string& name, std::vector<Fault>& faults) {
-  if (name.empty()) return 0;
-  const FeatureValue* value = attribute_of(feature, name, faults);
-  if (value == nullptr) return 0;
-  if (value->number && std::isfinite(*value->number) && *value->number > 0) return *value->number;
-  faults.push_back({fmt::format("{}: {} = {}", feature.place, name, value->text), "it must be a number above 0",
-                    "Mend the attribute"});
-  return 0;
+/// What an attribute gives a key, as text; of what is released it must be a positive number.
+std::string text_of(const FeatureValue& value, const std::string& key, const std::string& place,
+                    std::vector<Fault>& faults) {
+  if (!is_amount(key)) return value.text;
+  if (value.number && std::isfinite(*value.number) && *value.number > 0) return recipe::toml_number(*value.number);
+  faults.push_back(
+      {fmt::format("{}: {} = {}", place, value.name, value.text), "it must be a number above 0", "Mend the attribute"});
+  return value.text;
 }
 
 Slide from_feature(const PolygonFeature& feature, const SlideOptions& options, std::vector<Fault>& faults) {
@@ -66,12 +66,9 @@ Slide from_feature(const PolygonFeature& feature, const SlideOptions& options, s
   slide.name = fmt::format("slide-{}", feature.number);
   if (!options.name_from.empty())
     if (const FeatureValue* name = attribute_of(feature, options.name_from, faults)) slide.name = name->text;
-  slide.thickness = amount_of(feature, options.thickness_from, faults);
-  slide.depth = amount_of(feature, options.depth_from, faults);
-  slide.volume = amount_of(feature, options.volume_from, faults);
   for (const SlideKeyOptions& one : options.vary)
     if (const FeatureValue* value = attribute_of(feature, one.attribute, faults))
-      slide.set.emplace_back(one.key, value->text);
+      slide.set.emplace_back(one.key, text_of(*value, one.key, feature.place, faults));
   if (feature.polygons.empty())
     faults.push_back({feature.place + ": no polygon", "a slide is released within its outline",
                       "Draw it, or leave the feature out: outlines = \"FILE|subset=CONDITION\""});
@@ -99,9 +96,6 @@ Slide from_scenario(const ScenarioOptions& scenario, Layers& layers, std::vector
   if (slide.outline.empty())
     faults.push_back({slide.place + ": no polygon", "its layer holds none that meets its condition",
                       "Mend outline; look at it: ogrinfo -al " + vector_source(slide.source).file.string()});
-  slide.thickness = scenario.thickness;
-  slide.depth = scenario.depth;
-  slide.volume = scenario.volume;
   for (const std::string& text : scenario.set) {
     slide.set.push_back(parted(text));
     if (slide.set.back().second.empty())
@@ -113,19 +107,23 @@ Slide from_scenario(const ScenarioOptions& scenario, Layers& layers, std::vector
 
 /// Each slide must say how much is released, in a way that the model can take.
 void check_amount(const Slide& slide, ModelIs model, std::vector<Fault>& faults) {
+  const auto sets = [&](std::string_view key) {
+    return std::ranges::any_of(slide.set, [&](const auto& one) { return one.first == key; });
+  };
   const bool onto = model == ModelIs::base;
-  if (onto && slide.depth > 0)
-    faults.push_back({slide.place + ": a depth, with base_dem",
-                      "what is released lies on base_dem, and has a thickness",
-                      "Give a thickness or a volume, or the model as before_dem"});
-  if (!onto && slide.thickness > 0)
-    faults.push_back({slide.place + ": a thickness, with before_dem",
+  for (const char* key : cut_keys)
+    if (onto && sets(key))
+      faults.push_back({fmt::format("{}: {}, with base_dem", slide.place, key),
+                        "what is released lies on base_dem, and has a thickness",
+                        fmt::format("Set {}, or give the model as before_dem", thickness_key)});
+  if (!onto && sets(thickness_key))
+    faults.push_back({fmt::format("{}: {}, with before_dem", slide.place, thickness_key),
                       "what fails there lies above a curved sliding surface, and has a largest depth",
-                      "Give a depth or a volume, or the model as base_dem"});
-  if (onto && !(slide.thickness > 0) && !(slide.volume > 0) && faults.empty())
+                      fmt::format("Set {} or {}, or give the model as base_dem", cut_keys[0], cut_keys[1])});
+  if (onto && !sets(thickness_key) && faults.empty())
     faults.push_back(
-        {slide.place + ": neither thickness nor volume", "nothing says how much is released",
-         "Give thickness_from or volume_from in [slides], thickness_m or volume_m3 in [[slides.scenario]]"});
+        {slide.place + ": no thickness", "nothing says how much is released",
+         fmt::format("Set {}, in [[slides.set]] by an attribute, in [[slides.scenario]] by set", thickness_key)});
 }
 
 void check_names(const std::vector<Slide>& slides, std::vector<Fault>& faults) {

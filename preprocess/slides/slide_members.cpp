@@ -17,7 +17,7 @@
 namespace talus::preprocess {
 namespace {
 
-/// What a slide sets itself, so that its attributes cannot.
+/// What a slide sets itself, so that its attributes cannot, but for how much is released.
 constexpr const char* of_slides[] = {"preprocess.release",         "preprocess.source",    "preprocess.base_dem",
                                      "preprocess.before_dem",      "preprocess.after_dem", "preprocess.sliding_surface",
                                      "preprocess.thickness_factor"};
@@ -26,10 +26,9 @@ bool gives(const recipe::Recipe& recipe, const std::string& key) {
   return recipe.canonical("preprocess").value_or("").find("\"" + key + "\":") != std::string::npos;
 }
 
-/// The one [[preprocess.release]] of a slide.
-std::string release_of(const std::filesystem::path& source, double thickness) {
-  return fmt::format("preprocess.release=[{{polygons={},thickness_m={}}}]", recipe::toml_text(source.string()),
-                     recipe::toml_number(thickness));
+/// The one [[preprocess.release]] of a slide, which sets its thickness.
+std::string release_of(const std::filesystem::path& source) {
+  return fmt::format("preprocess.release=[{{polygons={},thickness_m=1.0}}]", recipe::toml_text(source.string()));
 }
 
 std::string source_of(const std::filesystem::path& source) {
@@ -43,37 +42,20 @@ std::optional<double> number_in(const std::string& text) {
   return value;
 }
 
-/// What a slide's recipe has beyond the one that all share, of [preprocess].
+/// What a slide's recipe has beyond the one that all share, of [preprocess], but for what its attributes set.
 std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapGrid& window) {
   std::vector<std::string> values;
   if (model == ModelIs::base) {
     std::vector<MapPolygon> turned = slide.outline;
     check_polygons(turned, slide.place);
-    double area = 0;
-    for (const MapPolygon& polygon : turned) area += area_of(polygon);
-    values.push_back(release_of(slide.source, slide.thickness > 0 ? slide.thickness : slide.volume / area));
+    values.push_back(release_of(slide.source));
   } else {
     values.push_back(source_of(slide.source));
-    if (slide.depth > 0)
-      values.push_back("preprocess.source.sliding_surface.depth_m=" + recipe::toml_number(slide.depth));
-    if (slide.volume > 0)
-      values.push_back("preprocess.source.sliding_surface.volume_m3=" + recipe::toml_number(slide.volume));
   }
   values.push_back(fmt::format("preprocess.grid.extent_m=[{}, {}, {}, {}]", recipe::toml_number(window.west),
                                recipe::toml_number(window.south), recipe::toml_number(window.east()),
                                recipe::toml_number(window.north())));
   return values;
-}
-
-/// A column of numbers that slides give themselves; none where no slide gives it.
-void add_amounts(MemberTable& table, const std::vector<Slide>& slides, const char* name, double Slide::*amount) {
-  MemberColumn column{name, {}, {}};
-  bool any = false;
-  for (const Slide& slide : slides) {
-    column.values.push_back(slide.*amount);
-    any = any || slide.*amount > 0;
-  }
-  if (any) table.columns.push_back(std::move(column));
 }
 
 /// A column of a key of the recipe: numbers where all are, else words.
@@ -102,11 +84,12 @@ MemberColumn column_of(const std::vector<Slide>& slides, std::size_t place) {
 void refuse_own_keys(const MemberTable& table) {
   for (const MemberColumn& column : table.columns)
     for (const char* own : of_slides)
-      if (column.key == own || column.key.starts_with(std::string(own) + ".") ||
-          column.key.starts_with(std::string(own) + "["))
-        throw RecipeError(Fault{"[slides]: " + column.key + " cannot be set by an attribute",
-                                "what is released, and on which ground, [slides] says itself",
-                                "Give it by thickness_from, depth_from or volume_from, or leave it out"});
+      if (!is_amount(column.key) && (column.key == own || column.key.starts_with(std::string(own) + ".") ||
+                                     column.key.starts_with(std::string(own) + "[")))
+        throw RecipeError(
+            Fault{"[slides]: " + column.key + " cannot be set by an attribute",
+                  "what is released, and on which ground, [slides] says itself",
+                  fmt::format("Set {}, {} or {}, or leave it out", thickness_key, cut_keys[0], cut_keys[1])});
 }
 
 /// The faults of a slide's recipe, with the slide in the place of the command line's --set.
@@ -139,7 +122,7 @@ ModelIs model_of(const recipe::Recipe& recipe) {
 Options shared_options(const recipe::Recipe& recipe, const SlideOptions& slides) {
   const std::filesystem::path& some = slides.scenario.empty() ? slides.outlines : slides.scenario.front().outline;
   const bool onto = model_of(recipe) == ModelIs::base;
-  return recipe.with({onto ? release_of(some, 1) : source_of(some)}).read<Options>("preprocess");
+  return recipe.with({onto ? release_of(some) : source_of(some)}).read<Options>("preprocess");
 }
 
 EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& slides, const SlideWindows& windows,
@@ -153,15 +136,9 @@ EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& sli
   table.slides->lattice = windows.lattice;
   table.slides->windows = windows.windows;
   table.slides->ground = windows.ground;
-  add_amounts(table, slides, "slides.thickness_m", &Slide::thickness);
-  add_amounts(table, slides, "slides.depth_m", &Slide::depth);
-  add_amounts(table, slides, "slides.volume_m3", &Slide::volume);
-  std::vector<MemberColumn> keys;
-  for (std::size_t place = 0; place < slides.front().set.size(); ++place) keys.push_back(column_of(slides, place));
-  MemberTable set;
-  set.columns = keys;
-  refuse_own_keys(set);
-  table.columns.insert(table.columns.end(), keys.begin(), keys.end());
+  for (std::size_t place = 0; place < slides.front().set.size(); ++place)
+    table.columns.push_back(column_of(slides, place));
+  refuse_own_keys(table);
   for (std::size_t k = 0; k < slides.size(); ++k) {
     table.names.push_back(slides[k].name);
     std::vector<std::string> values = values_of(slides[k], model, cut(windows.lattice, windows.windows[k]));
@@ -170,11 +147,8 @@ EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& sli
     plan.ground.emplace_back(options_of(recipe, slides[k], values));
     plan.own_values.push_back(std::move(values));
   }
-  if (!keys.empty()) check_keys(set, *plan.ground.front());
-  for (const int member : plan.options.keep)
-    if (member >= table.count)
-      throw RecipeError(Fault{fmt::format("[slides] keep names slide {}", member),
-                              fmt::format("there are {}, counted from 0", table.count), "Name one that is there"});
+  check_keys(table, *plan.ground.front());
+  plan.options.check_kept(table.count);
   return plan;
 }
 

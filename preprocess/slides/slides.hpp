@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,14 @@ namespace talus::preprocess {
 /// cut under its outline.
 enum class ModelIs { base, before };
 
+/// The keys that say how much a slide releases: laid onto base_dem, cut out of before_dem.
+inline constexpr const char* thickness_key = "preprocess.release[0].thickness_m";
+inline constexpr const char* cut_keys[] = {"preprocess.source.sliding_surface.depth_m",
+                                           "preprocess.source.sliding_surface.volume_m3"};
+
+/// Whether a key is one of these.
+inline bool is_amount(std::string_view key) { return key == thickness_key || key == cut_keys[0] || key == cut_keys[1]; }
+
 /// Which of them the recipe means. Throws RecipeError: neither or both are given, or what fails is given besides.
 ModelIs model_of(const recipe::Recipe& recipe);
 
@@ -35,7 +44,6 @@ struct Slide {
   std::string place;                                     ///< where it is given, for messages
   std::filesystem::path source;                          ///< its polygons in a vector file
   std::vector<MapPolygon> outline;                       ///< these, in the CRS of the model
-  double thickness = 0, depth = 0, volume = 0;           ///< [m], [m], [m3]; 0: not given
   std::vector<std::pair<std::string, std::string>> set;  ///< keys of the recipe and their values
 };
 

@@ -50,7 +50,7 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
   }
   for (const MemberWords& failure : e.table.failures) text += fmt::format("{} has no domain\n", failure.member);
   if (e.edge_fails) text += "who comes to an edge fails\n";
-  if (e.options.keep_deposits) text += "deposits are kept\n";
+  if (e.options.keeps("deposits")) text += "deposits are kept\n";
   if (e.options.is_budget()) text += recipe::to_toml(e.options.budget, "budget", false);
   text += fact(e.table.provenance, elevation_error_of_members);
   if (e.table.slides)
@@ -61,12 +61,7 @@ std::string fingerprint_of_members(const Ensemble& e, const std::filesystem::pat
 
 /// Refuses members that were drawn for another [ensemble] or domain.
 void judge_table(const StageContext& context, const Ensemble& e, const Domain& domain) {
-  judge_maker(context.recipe, {.file = e.paths.members(),
-                               .table = members_table(context.recipe),
-                               .mark = fact(e.table.provenance, recipe_of_members),
-                               .program = "talus-preprocess",
-                               .key = "",
-                               .named = false});
+  judge_members(context.recipe, e.paths.members(), e.table);
   const std::string of = fact(e.table.provenance, base_domain_id), is = fact(domain.provenance, domain_id);
   if (of != is)
     throw DataError({e.paths.members().string() + ": its members differ from another domain",
@@ -194,13 +189,10 @@ void judge_failures(const EnsembleCounts& counts, const Ensemble& e) {
   const auto failed = static_cast<double>(failures.size());
   if (failed == 0) return;
   warn("members-failed", fmt::format("{} of {} members failed; the counts are without them", failed, e.part.count()));
-  if (e.options.is_budget() ? counts.count(MemberState::counted) > 0 : failed <= e.options.may_fail(e.part.count()))
-    return;
-  throw NumericalError({fmt::format("{:.0f} of {} members failed, the first is {}", failed, e.part.count(),
-                                    e.table.name_of(failures.front().member)),
-                        fmt::format("[{}] failed_share allows {:g} of them: {}", e.table.slides ? "slides" : "ensemble",
-                                    e.options.failed_share, failures.front().words),
-                        "Mend what makes them fail, narrow the distributions, or raise failed_share"});
+  if (failed <= e.options.may_fail(e.part.count() - counts.count(MemberState::left_out))) return;
+  throw NumericalError(e.options.too_many_failed(fmt::format("{:.0f} of {} members failed, the first is {}", failed,
+                                                             e.part.count(), e.table.name_of(failures.front().member)),
+                                                 failures.front().words));
 }
 
 /// This function names the members that came to the edge of their domain.
@@ -222,7 +214,6 @@ bool count_members(const Ensemble& e, const Members& members, const std::vector<
   return run_members(members, counts,
                      {.devices = devices,
                       .save = [&] { write_counts(e.paths.unfinished(e.part), counts); },
-                      .save_interval = e.options.save_interval,
                       .edge_fails = e.edge_fails});
 }
 
@@ -290,7 +281,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
   members.note_changes(counts);
   take_up(e, flags, counts);
   counts.other_cells = e.options.is_budget();
-  counts.deposit_quantum = e.options.is_budget() ? 1e-6 : e.options.keep_deposits ? 1e-3 : 0;
+  counts.deposit_quantum = e.options.is_budget() ? 1e-6 : e.options.keeps("deposits") ? 1e-3 : 0;
   const auto unfinished = e.paths.unfinished(e.part);
   const OwnEnd saving("finished members are saved");
   keep_runs(context, members, e.options, e.paths, make_device(flags.on), counts);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/ensemble/keep_runs.hpp"
 
-#include <algorithm>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -19,18 +19,13 @@ namespace {
 /// The fact by which a kept run knows its ensemble and member.
 constexpr const char* kept_member = "ensemble.member";
 
-bool is_kept(const EnsembleOptions& options, std::int64_t member) {
-  return options.keep_all ||
-         std::find(options.keep.begin(), options.keep.end(), static_cast<int>(member)) != options.keep.end();
-}
-
 }  // namespace
 
 void keep_runs(StageContext& context, const Members& members, const EnsembleOptions& options,
                const EnsemblePaths& paths, const AnyDevice& device, const EnsembleCounts& counts) {
   for (std::int64_t k = counts.part.first; k < counts.part.end; ++k) {
     const MemberState state = counts.states[static_cast<std::size_t>(k - counts.part.first)];
-    if (!is_kept(options, k) || state == MemberState::left_out) continue;
+    if ((!options.keeps("all") && !options.keeps(std::to_string(k))) || state == MemberState::left_out) continue;
     const RunPaths files(paths.run_folder(k));
     const std::string mark = fmt::format("{} {}", counts.fingerprint, k);
     if (std::filesystem::exists(files.run) && fact(run_facts(files.run), kept_member) == mark) {

@@ -20,6 +20,10 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 
+/// What a killed process may lose [s]. What is finished is saved after the first member, so that a folder that takes
+/// no files shows at once, and then so often: writing the counts of a large map takes seconds.
+constexpr double save_interval = 60;
+
 double seconds_since(WallClock::time_point begun) {
   return std::chrono::duration<double>(WallClock::now() - begun).count();
 }
@@ -91,7 +95,7 @@ class Tallying {
   }
 
   void save() {
-    if (!plan_.save || seconds_since(saved_) < plan_.save_interval || done_ == members_) return;
+    if (!plan_.save || (saved_ && seconds_since(*saved_) < save_interval) || done_ == members_) return;
     plan_.save();
     saved_ = WallClock::now();
   }
@@ -101,7 +105,8 @@ class Tallying {
   const MembersPlan& plan_;
   std::mutex mutex_;
   Progress progress_;
-  WallClock::time_point begun_ = WallClock::now(), saved_ = begun_;
+  WallClock::time_point begun_ = WallClock::now();
+  std::optional<WallClock::time_point> saved_;
 };
 
 }  // namespace

@@ -17,8 +17,7 @@ namespace talus::solver {
 /// How members are run.
 struct MembersPlan {
   std::vector<AnyDevice> devices;   ///< one for each member in flight, with a stream of its own on a GPU
-  std::function<void()> save = {};  ///< called about every `save_interval` while no member is being counted
-  double save_interval = 60;        ///< [s]
+  std::function<void()> save = {};  ///< called now and then while no member is being counted
   bool edge_fails = false;          ///< a member that comes to the edge of its grid counts as failed
 };
 

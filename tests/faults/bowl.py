@@ -41,7 +41,7 @@ MORE_RUNS = {
     "ensemble": """
 [ensemble]
 members = 3
-keep = [1]
+keep = ["1"]
 
 [[ensemble.vary]]
 key = "solve.base.friction_angle_deg"
@@ -57,8 +57,8 @@ high = 1.1
 [slides]
 outlines = "areas.geojson"
 name_from = "name"
-thickness_from = "depth"
 margin_m = 60.0
+set = [{ key = "preprocess.release[0].thickness_m", attribute = "depth" }]
 """,
 }
 SCENES = ("run", *MORE_RUNS)

@@ -12,8 +12,7 @@ ensemble() {
 [ensemble]
 members = 12
 design = "latin-hypercube"
-keep = [3]
-save_interval_s = 0.05
+keep = ["3"]
 
 [[ensemble.vary]]
 key = "solve.base.friction_angle_deg"

@@ -112,8 +112,11 @@ PYTHON
 [slides]
 outlines = "areas.geojson"
 name_from = $(quoted "$image")
-thickness_from = "depth"
 margin_m = 100.0
+
+[[slides.set]]
+key = "preprocess.release[0].thickness_m"
+attribute = "depth"
 
 [[slides.set]]
 key = "solve.base.friction_angle_deg"

@@ -145,7 +145,7 @@ test_members_of_an_ensemble_and_of_a_budget_know_the_places() {
 
 [ensemble]
 members = 2
-keep = [1]
+keep = ["1"]
 
 [[ensemble.vary]]
 key = "solve.inflow[0].scale"

@@ -49,8 +49,13 @@ for n, x in enumerate([30, 50]):
 json.dump({"type": "FeatureCollection", "features": features}, open("areas.geojson", "w"))
 PYTHON
   sed -i 's/^before_dem.*/base_dem = "before.asc"/; /^after_dem/d; /^\[postprocess.survey/,$d' recipe.toml
-  printf '[slides]\noutlines = "areas.geojson"\nname_from = "name"\nthickness_from = "depth"\nmargin_m = 60.0\n' \
-    >>recipe.toml
+  cat >>recipe.toml <<'TOML'
+[slides]
+outlines = "areas.geojson"
+name_from = "name"
+margin_m = 60.0
+set = [{ key = "preprocess.release[0].thickness_m", attribute = "depth" }]
+TOML
   stages_say out/counts.h5 out/members.h5
   sed -i 's/"depth": 3/"depth": null/' areas.geojson
   said 3 preprocess

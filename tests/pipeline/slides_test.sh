@@ -50,10 +50,13 @@ friction_angle_deg = 15.0
 [slides]
 outlines = "areas.geojson"
 name_from = "name"
-thickness_from = "depth"
 TOML
   printf '%s\n' "$@" >>recipe.toml
   cat >>recipe.toml <<'TOML'
+
+[[slides.set]]
+key = "preprocess.release[0].thickness_m"
+attribute = "depth"
 
 [[slides.set]]
 key = "solve.base.friction_angle_deg"
@@ -62,7 +65,7 @@ TOML
 }
 
 test_a_slide_is_the_run_alone_and_maps_are_of_all_slides() {
-  slides 'margin_m = 180.0' 'keep_all = true'
+  slides 'margin_m = 180.0' '[ensemble]' 'keep = ["all"]'
   expect_exit 0 preprocess
   expect_words 'slides: 4 over'
   expect_exit 0 solve
@@ -119,7 +122,7 @@ for name, quantum in (("peak_thickness", 1e-3), ("peak_speed", 1e-2), ("peak_pre
         if not np.allclose(share, count / 4, atol=1e-7): sys.exit("the share of slides is another")
 found = list(csv.DictReader(open("out/slides.csv")))
 if [row["name"] for row in found] != ["north", "south", "east", "next"]: sys.exit(f"names: {found}")
-if [float(row["slides.thickness_m"]) for row in found] != [3, 2, 4, 3]: sys.exit("inputs of the table")
+if [float(row["preprocess.release[0].thickness_m"]) for row in found] != [3, 2, 4, 3]: sys.exit("inputs of the table")
 for row in found:
     if row["state"] != "counted" or not float(row["largest_speed_m_s"]) > 0: sys.exit(f"row {row}")
     for what in ("thickness_m", "deposit_m", "speed_m_s", "pressure_kPa"):
@@ -175,7 +178,7 @@ PYTHON
 }
 
 test_killed_slides_go_on() {
-  slides 'margin_m = 180.0' 'save_interval_s = 0.001'
+  slides 'margin_m = 180.0'
   expect_exit 0 preprocess
   expect_exit 0 solve
   mv out/counts.h5 whole.h5
@@ -193,7 +196,7 @@ test_killed_slides_go_on() {
 }
 
 test_a_slide_at_the_edge_of_its_domain_is_named_or_fails() {
-  slides 'margin_m = 30.0' 'failed_share = 1.0'
+  slides 'margin_m = 30.0' '[ensemble]' 'failed_share = 1.0'
   expect_exit 0 preprocess
   expect_exit 0 solve
   expect_words 'came to the edge of their domain' 'Give a larger margin_m'
@@ -201,7 +204,7 @@ test_a_slide_at_the_edge_of_its_domain_is_named_or_fails() {
   expect_words 'came to the edge of their domain'
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "edge_cells") at = i }
     NR > 1 && $at > 0 { ++n } END { exit !n }' out/slides.csv || fail "no row says so: $(cat out/slides.csv)"
-  sed -i 's/^failed_share.*/failed_share = 1.0\nat_edge = "fail"/' recipe.toml
+  sed -i 's/^margin_m.*/margin_m = 30.0\nat_edge = "fail"/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve
   expect_words 'it came to the edge of its domain'
@@ -220,7 +223,7 @@ test_what_cannot_be_is_refused_with_its_place() {
   sed -i 's/"depth": null/"depth": 2.0/' areas.geojson
   printf '\n[ensemble]\nmembers = 3\n[ensemble.elevation_error]\nfrom_survey = true\n' >>recipe.toml
   expect_exit 2 preprocess
-  expect_words '[slides] beside [ensemble]'
+  expect_words '[slides] beside [ensemble] with members of its own'
 }
 
 # 20,000 x 20,000 cells as numbers would be 3.2 GB; two slides lie in opposite corners of it.

@@ -34,7 +34,6 @@ const titles = {
 
 /** "run-out [m]"; of a key its last part, which has its unit, and the table before it where that tells more. */
 export function columnTitle(column) {
-  if (column.kind === "input" && column.name.startsWith("slides.")) return column.name.slice("slides.".length);
   if (column.kind === "input") return column.name.split(".").slice(-2).join(".");
   const unit = unitOfPowers(column.unit);
   return (titles[column.name] ?? column.name) + (unit ? ` [${unit}]` : "");

@@ -98,9 +98,34 @@ TEST(check_members, an_ensemble_reads_back_as_it_is_written_and_says_what_it_lac
   const std::string none = recipe::to_toml(EnsembleOptions{}, "ensemble", true);
   EXPECT_FALSE(ensemble_of(recipe::Recipe(scratch.write("recipe.toml", none))).on()) << "the template";
   EXPECT_NE(test::faults_of_recipe("[ensemble]\nmembers = 5\n").find("nothing that varies"), std::string::npos);
+  EXPECT_NE(test::faults_of_recipe("[ensemble]\nkeep = [\"first\"]\n").find("keep holds \"first\""), std::string::npos);
+  EXPECT_NE(test::faults_of_recipe("[ensemble]\ndesign = \"slides\"\n").find("without [slides]"), std::string::npos);
   EXPECT_NE(test::faults_of_recipe("[ensemble]\nmembers = 5\n[[ensemble.vary]]\nkey = \"solve.a\"\nlow = 1.0\n")
                 .find("low or high is missing"),
             std::string::npos);
+}
+
+TEST(check_members, an_ensemble_beside_slides_says_how_they_are_kept_and_counted_and_draws_nothing) {
+  const std::string slides = "[slides]\noutlines = \"areas.gpkg\"\n";
+  const test::Scratch scratch;
+  const auto beside = [&](const std::string& text) {
+    return ensemble_of(recipe::Recipe(scratch.write("recipe.toml", slides + text)));
+  };
+  EXPECT_TRUE(beside("").on());
+  EXPECT_EQ(beside("").thresholds.thickness, (std::vector<double>{0.1, 0.5, 1}));
+  const EnsembleOptions given = beside("[ensemble]\nkeep = [\"3\", \"deposits\"]\nthresholds.thickness_m = [2.0]\n");
+  EXPECT_EQ(given.design, Design::slides);
+  EXPECT_TRUE(given.keeps("3") && given.keeps("deposits") && !given.keeps("all"));
+  EXPECT_EQ(given.thresholds.thickness, (std::vector<double>{2}));
+  EXPECT_EQ(given.thresholds.pressure, (std::vector<double>{3, 30}));
+  const std::string used = recipe::to_toml(given, "ensemble", false);
+  EXPECT_EQ(recipe::to_toml(beside(used), "ensemble", false), used);
+  for (const char* drawn : {"members = 3\n", "design = \"sobol\"\n",
+                            "[[ensemble.vary]]\nkey = \"solve.a\"\nlow = 1.0\n"
+                            "high = 2.0\n"})
+    EXPECT_NE(test::faults_of_recipe(slides + "[ensemble]\n" + drawn).find("[slides] beside [ensemble]"),
+              std::string::npos)
+        << drawn;
 }
 
 }  // namespace

@@ -212,7 +212,7 @@ TEST(draw, what_does_not_go_with_a_design_is_refused) {
   o.vary.clear();
   EXPECT_NE(fault_of_drawing(o).find("without [[ensemble.vary]]"), std::string::npos);
   o = ensemble(20, Design::sobol, 1);
-  o.keep = {20};
+  o.keep = {"20"};
   EXPECT_NE(fault_of_drawing(o).find("keep names member 20 (there are 20, counted from 0)"), std::string::npos);
   EXPECT_NE(fault_of_drawing(ensemble(20, Design::sobol, 1112)).find("1111 directions"), std::string::npos);
   EXPECT_NE(fault_of_drawing(ensemble(100000, Design::optimal_hypercube, 3)).find("up to 200000 numbers are"),

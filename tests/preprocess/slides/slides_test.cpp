@@ -70,13 +70,21 @@ struct ManySlides {
   }
 };
 
-const char* const by_depth = "outlines = \"areas.geojson\"\nname_from = \"name\"\nthickness_from = \"depth\"\n";
+/// Lines of [slides]: the outlines, and keys of the recipe that take an attribute each.
+std::string with_set(const std::vector<std::pair<std::string, std::string>>& keys) {
+  std::string set;
+  for (const auto& [key, attribute] : keys)
+    set += fmt::format("{}{{key = \"{}\", attribute = \"{}\"}}", set.empty() ? "" : ", ", key, attribute);
+  return fmt::format("outlines = \"areas.geojson\"\nname_from = \"name\"\nset = [{}]\n", set);
+}
+
+const std::string by_depth = with_set({{thickness_key, "depth"}});
 
 TEST(Slides, get_the_rectangle_around_their_outline_and_a_margin_in_whole_cells) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)"),
                  ManySlides::feature(505, 405, R"("name":"b","depth":3)")});
-  const EnsemblePlan plan = ManySlides::plan(many.recipe(std::string(by_depth) + "margin_m = 95.0\n"));
+  const EnsemblePlan plan = ManySlides::plan(many.recipe(by_depth + "margin_m = 95.0\n"));
   const SlideTable& slides = *plan.table.slides;
   EXPECT_EQ(plan.table.names, (std::vector<std::string>{"a", "b"}));
   // a: columns 30 to 33 and ten around; b lies half a cell off, and touches five.
@@ -87,7 +95,7 @@ TEST(Slides, get_the_rectangle_around_their_outline_and_a_margin_in_whole_cells)
   EXPECT_EQ(slides.windows[1].column, 20);
   EXPECT_EQ(slides.windows[1].row, 20);
   EXPECT_EQ(slides.windows[1].columns, 25);
-  EXPECT_EQ(plan.table.columns[0].key, "slides.thickness_m");
+  EXPECT_EQ(plan.table.columns[0].key, "preprocess.release[0].thickness_m");
   EXPECT_EQ(plan.table.columns[0].values, (std::vector<double>{2, 3}));
 }
 
@@ -95,7 +103,7 @@ TEST(Slides, are_what_a_recipe_of_one_of_them_makes) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)"),
                  ManySlides::feature(505, 405, R"("name":"b","depth":3)")});
-  EnsemblePlan plan = ManySlides::plan(many.recipe(std::string(by_depth) + "margin_m = 95.0\n"));
+  EnsemblePlan plan = ManySlides::plan(many.recipe(by_depth + "margin_m = 95.0\n"));
   const MapGrid window = cut(plan.table.slides->lattice, plan.table.slides->windows[1]);
   const auto alone = recipe::Recipe(many.scratch.write(
       "alone.toml",
@@ -112,11 +120,10 @@ TEST(Slides, are_what_a_recipe_of_one_of_them_makes) {
   EXPECT_GT(one.points.volume.size(), 0u);
 }
 
-TEST(Slides, of_a_volume_get_the_thickness_that_gives_it) {
+TEST(Slides, of_a_thickness_have_the_volume_of_their_area_times_it) {
   const ManySlides many;
-  many.outlines({ManySlides::feature(300, 200, R"("name":"a","v":4800)")});
-  const EnsemblePlan plan = ManySlides::plan(
-      many.recipe("outlines = \"areas.geojson\"\nname_from = \"name\"\nvolume_from = \"v\"\nmargin_m = 100.0\n"));
+  many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":3)")});
+  const EnsemblePlan plan = ManySlides::plan(many.recipe(by_depth + "margin_m = 100.0\n"));
   const Prepared made = prepare(*plan.ground[0], Points::counted);
   EXPECT_NEAR(made.total.volume, 4800, 1e-9 * 4800);
 }
@@ -125,12 +132,22 @@ TEST(Slides, are_cut_out_of_the_model_by_depth_where_it_is_the_surface_before) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","d":4)")});
   const EnsemblePlan plan = ManySlides::plan(
-      many.recipe("outlines = \"areas.geojson\"\nname_from = \"name\"\ndepth_from = \"d\"\nmargin_m = 100.0\n",
-                  "before_dem = \"model.tif\""));
+      many.recipe(with_set({{cut_keys[0], "d"}}) + "margin_m = 100.0\n", "before_dem = \"model.tif\""));
   const Domain made = prepare(*plan.ground[0], Points::counted).domain;
   double deepest = 0;
   for (const double thickness : made.release_thickness.values) deepest = std::max(deepest, thickness);
   EXPECT_NEAR(deepest, 4, 1e-6);
+}
+
+TEST(Slides, that_say_what_the_model_cannot_take_are_refused) {
+  const ManySlides many;
+  many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)")});
+  const std::string cut = ManySlides::fault(many.recipe(with_set({{cut_keys[1], "depth"}}) + "margin_m = 50.0\n"));
+  EXPECT_NE(cut.find("sliding_surface.volume_m3, with base_dem"), std::string::npos) << cut;
+  const std::string laid = ManySlides::fault(many.recipe(by_depth, "before_dem = \"model.tif\""));
+  EXPECT_NE(laid.find("release[0].thickness_m, with before_dem"), std::string::npos) << laid;
+  const std::string none = ManySlides::fault(many.recipe(with_set({})));
+  EXPECT_NE(none.find("feature 0: no thickness"), std::string::npos) << none;
 }
 
 /// Down at 30 degrees from x = 300 m to 500 m, then level: the line of 11 degrees meets the level 2 tan 30 / tan 11
@@ -153,11 +170,11 @@ TEST(Slides, are_refused_with_their_place_and_all_at_once) {
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)"),
                  ManySlides::feature(500, 200, R"("name":"a","depth":null)"),
                  ManySlides::feature(700, 200, R"("name":"c","depth":-1)")});
-  const std::string text = ManySlides::fault(many.recipe(std::string(by_depth) + "margin_m = 50.0\n"));
+  const std::string text = ManySlides::fault(many.recipe(by_depth + "margin_m = 50.0\n"));
   EXPECT_NE(text.find("feature 1: attribute depth is NULL"), std::string::npos) << text;
   EXPECT_NE(text.find("feature 2: depth = -1"), std::string::npos) << text;
   EXPECT_NE(text.find("name \"a\" is taken by"), std::string::npos) << text;
-  const std::string missing = ManySlides::fault(many.recipe("outlines = \"areas.geojson\"\nthickness_from = \"t\"\n"));
+  const std::string missing = ManySlides::fault(many.recipe(with_set({{thickness_key, "t"}})));
   EXPECT_NE(missing.find("no attribute t (it has name, depth)"), std::string::npos) << missing;
 }
 
@@ -165,7 +182,7 @@ TEST(Slides, beyond_the_model_are_refused_by_name) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)"),
                  ManySlides::feature(1180, 200, R"("name":"b","depth":2)")});
-  const std::string text = ManySlides::fault(many.recipe(std::string(by_depth) + "margin_m = 50.0\n"));
+  const std::string text = ManySlides::fault(many.recipe(by_depth + "margin_m = 50.0\n"));
   EXPECT_NE(text.find("feature 1 (b): its outline reaches beyond"), std::string::npos) << text;
 }
 
@@ -175,20 +192,20 @@ TEST(Slides, without_a_polygon_are_refused) {
   const std::string none = ManySlides::fault(many.recipe(by_depth));
   EXPECT_NE(none.find("no feature"), std::string::npos) << none;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)")});
-  const std::string filtered =
-      ManySlides::fault(many.recipe("outlines = \"areas.geojson|subset=depth > 5\"\nthickness_from = \"depth\"\n"));
+  std::string some = by_depth;
+  some.insert(some.find(".geojson") + 8, "|subset=depth > 5");
+  const std::string filtered = ManySlides::fault(many.recipe(some));
   EXPECT_NE(filtered.find("no feature whose attributes meet depth > 5"), std::string::npos) << filtered;
 }
 
 TEST(Slides, take_no_keys_that_are_theirs_and_no_value_twice) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)")});
-  const std::string own = ManySlides::fault(many.recipe(std::string(by_depth) +
-                                                        "[[slides.set]]\nkey = \"preprocess.release[0].thickness_m\"\n"
-                                                        "attribute = \"depth\"\n"));
+  const std::string own = ManySlides::fault(
+      many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.release[0].volume_factor", "depth"}})));
   EXPECT_NE(own.find("cannot be set by an attribute"), std::string::npos) << own;
-  const std::string grid = ManySlides::fault(many.recipe(
-      std::string(by_depth) + "[[slides.set]]\nkey = \"preprocess.grid.spacing_m\"\nattribute = \"depth\"\n"));
+  const std::string grid =
+      ManySlides::fault(many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.grid.spacing_m", "depth"}})));
   EXPECT_NE(grid.find("preprocess.grid.spacing_m cannot vary"), std::string::npos) << grid;
   const std::string besides = ManySlides::fault(
       many.recipe(by_depth, "base_dem = \"model.tif\"\ngrid.extent_m = [500000.0, 5e6, 500100.0, 5.1e6]"));
@@ -204,10 +221,10 @@ TEST(Slides, that_are_listed_choose_their_outline_and_set_values) {
                  ManySlides::feature(505, 405, R"("name":"b","depth":3)")});
   const auto recipe = many.recipe(
       "margin_m = 50.0\n"
-      "[[slides.scenario]]\nname = \"soft\"\noutline = \"areas.geojson|subset=name = 'b'\"\nthickness_m = 2.5\n"
-      "set = [\"solve.base.friction_angle_deg = 14\"]\n"
-      "[[slides.scenario]]\nname = \"stiff\"\noutline = \"areas.geojson|subset=name = 'b'\"\nthickness_m = 2.5\n"
-      "set = [\"solve.base.friction_angle_deg = 24\"]\n");
+      "[[slides.scenario]]\nname = \"soft\"\noutline = \"areas.geojson|subset=name = 'b'\"\n"
+      "set = [\"preprocess.release[0].thickness_m = 2.5\", \"solve.base.friction_angle_deg = 14\"]\n"
+      "[[slides.scenario]]\nname = \"stiff\"\noutline = \"areas.geojson|subset=name = 'b'\"\n"
+      "set = [\"preprocess.release[0].thickness_m = 2.5\", \"solve.base.friction_angle_deg = 24\"]\n");
   const EnsemblePlan plan = ManySlides::plan(recipe);
   EXPECT_EQ(plan.table.names, (std::vector<std::string>{"soft", "stiff"}));
   EXPECT_EQ(plan.table.find("solve.base.friction_angle_deg")->values, (std::vector<double>{14, 24}));

@@ -102,7 +102,7 @@ TEST_F(EnsembleStage, goes_on_from_what_is_finished) {
 }
 
 TEST_F(EnsembleStage, keeps_whole_runs_of_the_members_asked_for) {
-  scratch_.write("recipe.toml", recipe_text("keep = [1]\n"));
+  scratch_.write("recipe.toml", recipe_text("keep = [\"1\"]\n"));
   MemberTable table = small_table();
   table.provenance = {{recipe_of_members, recipe_mark(recipe::Recipe(recipe_file_), "ensemble")},
                       {base_domain_id, "0123"}};
@@ -115,7 +115,7 @@ TEST_F(EnsembleStage, keeps_whole_runs_of_the_members_asked_for) {
 }
 
 TEST_F(EnsembleStage, keeps_no_run_of_a_member_that_is_refused) {
-  scratch_.write("recipe.toml", recipe_text("keep = [1, 2, 3]\nfailed_share = 0.5\n"));
+  scratch_.write("recipe.toml", recipe_text("keep = [\"1\", \"2\", \"3\"]\nfailed_share = 0.5\n"));
   MemberTable table = small_table();
   table.columns.push_back(
       {"solve.material.youngs_modulus_Pa", {1e6, 10, 1e6, 1e6, 1e6, 1e6}, {}});  // its weight squashes it
