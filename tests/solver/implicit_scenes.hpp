@@ -3,12 +3,7 @@
 // What the tests of implicit steps share: a column between rollers, a cantilever, and steps to a time.
 #pragma once
 
-#include "solver/integrator/scene.hpp"
 #include "solver/options/loads.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/options/time.hpp"
-#include "solver/options/walls.hpp"
-#include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -37,18 +32,12 @@ inline SolveOptions column_options() {
 
 /// Newton iterations on the way.
 inline int steps_to(Solver& solver, double time, StepStats* last = nullptr) {
-  solver.set_next_event(time);
   int newton = 0;
-  for (;;) {
-    const BatchReport batch = solver.advance();
+  run_to(solver, time, [&](const BatchReport& batch) {
     newton += batch.stats.newton;
     if (last) *last = batch.stats;
-    if (batch.clock.alarms.halt == at_event) return newton;
-    if (batch.clock.alarms.halt == failed) {
-      ADD_FAILURE();
-      return newton;
-    }
-  }
+  });
+  return newton;
 }
 
 /// validation.md A2 at two cells over the depth: a cantilever of 10 x 1 x 1 m, E = 1 GPa, held at x = 0, its last

@@ -6,20 +6,13 @@
 #include <random>
 
 #include "solver/elements/forces.hpp"
-#include "solver/elements/held_nodes.hpp"
-#include "solver/elements/mean_dilation.hpp"
 #include "solver/elements/point_tangents.hpp"
 #include "solver/implicit/scatter_inertia.hpp"
-#include "solver/integrator/scene.hpp"
 #include "solver/linear/direct/cholesky_solver.hpp"
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
 #include "solver/linear/preconditioner/preconditioner.hpp"
-#include "solver/material/point_tangent.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/parallel/tiles.hpp"
-#include "solver/parallel/vectors.hpp"
-#include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

@@ -3,12 +3,9 @@
 // A block on a slope with all that a step of it works on, as an implicit solver would hold it.
 #pragma once
 
-#include "solver/boundary/contact_impulses.hpp"
 #include "solver/boundary/surface_contact.hpp"
 #include "solver/implicit/controls.hpp"
 #include "solver/implicit/step_parts.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/settings.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

@@ -3,8 +3,6 @@
 // Plans for the solver's tests.
 #pragma once
 
-#include <memory>
-
 #include "solver/plan/plan.hpp"
 
 namespace talus::solver::testing {

@@ -5,14 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
-#include <functional>
-#include <vector>
 
 #include "solver/grid/sparse_grid.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/integrator/solver.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/on.hpp"
 #include "solver/scene/make_scene.hpp"
@@ -112,19 +107,24 @@ inline std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOpti
   return solver::resume_solver(scene, options, make_device(on), state);
 }
 
+/// Step to a time; `look` is called with the report of each batch.
+template <class Look>
+void run_to(Solver& solver, double time, Look&& look) {
+  solver.set_next_event(time);
+  for (BatchReport batch; batch.clock.alarms.halt != at_event;) {
+    batch = solver.advance();
+    look(batch);
+    if (batch.clock.alarms.halt != failed) continue;
+    ADD_FAILURE() << "point " << batch.clock.alarms.failed_point << " failed at t = " << batch.clock.time;
+    return;
+  }
+}
+
 /// Step to a time; returns the number of sorts on the way.
 inline int run_to(Solver& solver, double time) {
   int sorts = 0;
-  solver.set_next_event(time);
-  for (;;) {
-    const BatchReport batch = solver.advance();
-    sorts += batch.sorted ? 1 : 0;
-    if (batch.clock.alarms.halt == failed) {
-      ADD_FAILURE() << "point " << batch.clock.alarms.failed_point << " failed at t = " << batch.clock.time;
-      return sorts;
-    }
-    if (batch.clock.alarms.halt == at_event) return sorts;
-  }
+  run_to(solver, time, [&](const BatchReport& batch) { sorts += batch.sorted ? 1 : 0; });
+  return sorts;
 }
 
 struct Centre {
@@ -149,5 +149,19 @@ inline Centre centre(const Solver& solver, const Scene& scene) {
   }
   return {c.x / volume, c.y / volume, c.z / volume, std::sqrt(vx * vx + vy * vy + vz * vz) / volume};
 }
+
+/// A run of a scene on a new device.
+struct SceneRun {
+  Scene scene;
+  std::unique_ptr<Solver> solver;
+  Centre first;  ///< as it begins
+  SceneRun(const Domain& d, const SolveOptions& o, On on)
+      : scene(make_scene(d, o)), solver(make_solver(scene, o, on)), first(now()) {}
+  Centre now() const { return centre(*solver, scene); }
+  Centre at(double time) const {
+    run_to(*solver, time);
+    return now();
+  }
+};
 
 }  // namespace talus::solver::testing

@@ -3,9 +3,6 @@
 // A small grid and a point in it, in the test's own memory, for what one thread of a kernel does.
 #pragma once
 
-#include <vector>
-
-#include "solver/state/grid_view.hpp"
 #include "solver/state/particles.hpp"
 
 namespace talus::solver::testing {

@@ -3,8 +3,6 @@
 // talus-solve called by a program that links it.
 #include "solver/stage.hpp"
 
-#include <gtest/gtest.h>
-
 #include "common/stage/context.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 

@@ -3,8 +3,6 @@
 // A step of the implicit solver: its clock and what it reports.
 #include "solver/implicit/implicit_solver.hpp"
 
-#include <memory>
-
 #include "tests/solver/parts_bench.hpp"
 
 namespace talus::solver::testing {

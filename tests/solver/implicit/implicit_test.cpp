@@ -1,13 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit steps of elastic bodies against closed forms, explicit steps and one another.
-#include <numbers>
 #include <numeric>
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/implicit_scenes.hpp"
 
 namespace talus::solver::testing {
@@ -149,11 +144,7 @@ TEST_P(Implicit, solves_linear_systems_no_further_than_newton_can_use) {
     o.implicit.forcing = forcing;
     const Scene scene = make_scene(d, o);
     const auto solver = make_solver(scene, o, GetParam());
-    solver->set_next_event(1.0);
-    for (BatchReport batch; batch.clock.alarms.halt != at_event;) {
-      batch = solver->advance();
-      linear[which] += batch.stats.linear;
-    }
+    run_to(*solver, 1.0, [&](const BatchReport& batch) { linear[which] += batch.stats.linear; });
     centre_of[which] = centre(*solver, scene).z;
   }
   EXPECT_LT(linear[1], linear[0]);
@@ -345,8 +336,7 @@ TEST_P(Implicit, keeps_the_pressure_of_nearly_incompressible_blocks_smooth) {
         o.shape = shape;
         o.material.poisson_ratio = poisson;
         o.implicit.b_bar = b_bar;
-        const Scene scene = make_scene(d, o);
-        const auto solver = make_solver(scene, o, GetParam());
+        const auto solver = make_solver(make_scene(d, o), o, GetParam());
         steps_to(*solver, 1.0);
         const double amplitude = checkerboard(*solver, o);
         std::printf("  nu = %.3f, %s%s: checkerboard %.2f %% of the mean pressure\n", poisson, name_of(shape),

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The nodes at the start of an implicit step: velocities, loads, what holds them and how contacts begin.
+// The nodes of an implicit step: their buffers, how they begin, and the maps that they leave.
 #include "solver/implicit/prepare_nodes.hpp"
 
 #include <gtest/gtest.h>
 
+#include "solver/implicit/node_arrays.hpp"
+#include "solver/implicit/node_fields.hpp"
+#include "solver/implicit/record_columns.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {
@@ -105,6 +108,70 @@ TEST(PrepareNodes, moves_what_a_fixed_wall_holds_with_the_wall) {
   p.prepare(true);
   EXPECT_EQ(trace(p.freed[p.at(3)]), 0);
   EXPECT_DOUBLE_EQ(p.u[p.at(3)].x, 0.2);
+}
+
+TEST(NodeFields, begin_at_zero_where_points_add_to_them) {
+  NodeFields<CpuDevice> fields{CpuDevice::make()};
+  for (const int count : {5, 9, 3}) {
+    fields.resize(count);
+    EXPECT_EQ(fields.u.size(), static_cast<std::size_t>(count));
+    for (const double m : fields.mass.download()) EXPECT_EQ(m, 0);
+    for (const auto& f : fields.external.download()) EXPECT_EQ(dot(f, f), 0);
+    for (double* m = fields.mass.data(); m != fields.mass.data() + count; ++m) *m = 1;
+  }
+  EXPECT_GT(fields.bytes(), 9 * (sizeof(double) + 11 * sizeof(Vec3<double>)));
+}
+
+TEST(NodeFields, show_statics_neither_arrival_nor_acceleration) {
+  NodeFields<CpuDevice> fields{CpuDevice::make()};
+  fields.resize(1);
+  EXPECT_EQ(fields.arrays(false).arrival, nullptr);
+  EXPECT_EQ(fields.arrays(false).acceleration, nullptr);
+  const NodeArrays dynamic = fields.arrays(true);
+  *dynamic.velocity = {1, 0, -1};
+  *dynamic.arrival = {0, 0, 1};
+  EXPECT_EQ(dynamic.begin_velocity(0).x, 1);
+  EXPECT_EQ(dynamic.begin_velocity(0).z, 0);
+}
+
+/// A grid with mass in column (5, 2) alone, and its maps.
+struct Recorded {
+  SmallGrid grid;
+  std::vector<double> mass = std::vector<double>(SmallGrid::nodes), thickness = std::vector<double>(64),
+                      speed = thickness, pressure = thickness, arrival = std::vector<double>(64, -1);
+
+  Recorded() {
+    put(1, 1000);
+    put(4, 3000);
+  }
+  void put(int k, double m) { mass[static_cast<std::size_t>(grid.view().find(5, 2, k))] = m; }
+  void record(const double* volumes = nullptr) {
+    const MapView maps{{thickness.data(), speed.data(), pressure.data(), arrival.data()}, 0.1};
+    const RecordColumns<double> kernel{grid.view(), grid.active.data(), mass.data(), {2000, volumes}, 7, maps};
+    for (int c = 0; c < 4 * block_columns; ++c) kernel(c);
+  }
+};
+
+constexpr std::size_t column = 2 * SmallGrid::side + 5;
+
+TEST(RecordColumns, keeps_the_sum_over_the_layers_of_the_column_that_has_mass) {
+  Recorded r;
+  r.record();
+  EXPECT_DOUBLE_EQ(r.thickness[column], 4000.0 / (2000 * 4));
+  EXPECT_EQ(r.arrival[column], 7);
+  for (std::size_t c = 0; c < r.thickness.size(); ++c) {
+    if (c == column) continue;
+    EXPECT_EQ(r.thickness[c], 0) << "column " << c;
+    EXPECT_EQ(r.arrival[c], -1) << "column " << c;
+  }
+}
+
+TEST(RecordColumns, measures_thickness_by_volume_where_densities_differ) {
+  Recorded r;
+  std::vector<double> volumes(64);
+  volumes[column] = 4;  // 1000 kg/m3 for 4000 kg
+  r.record(volumes.data());
+  EXPECT_DOUBLE_EQ(r.thickness[column], 1);
 }
 
 }  // namespace

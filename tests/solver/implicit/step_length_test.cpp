@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The length of implicit steps: over events, after failures, with iterations, and with the way of the farthest point.
+// What goes from step to step: their length, when iterations are given up, and the slip over which friction grows.
 #include "solver/implicit/step_length.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "solver/implicit/friction_smoothing.hpp"
+#include "solver/implicit/stall.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -89,6 +92,52 @@ TEST(StepLength, wastes_less_than_a_twentieth_of_its_attempts_on_a_limit_that_it
   EXPECT_GT(moving.share, 0.6);
   const Attempts far = attempts([](double time) { return 0.1 / (1 + 0.1 * time); }, true);
   EXPECT_LT(far.failed, 0.01 * far.accepted) << "a limit on the way is foreseen";
+}
+
+/// The iteration at which a step with this residual is given up; -1: none of a hundred.
+template <class Residual>
+int given_up_at(int patience, const Residual& residual) {
+  Stall stall(patience);
+  for (int n = 0; n < 100; ++n) {
+    if (stall.gives_up(residual(n))) return n;
+  }
+  return -1;
+}
+
+TEST(Stall, gives_up_when_the_residual_stays) {
+  EXPECT_EQ(given_up_at(7, [](int) { return 0.01; }), 7);
+  // A first fall, then nothing: so many iterations after the last halving. Growth is none.
+  EXPECT_EQ(given_up_at(7, [](int n) { return n < 5 ? std::pow(0.4, n) : 0.05 * n; }), 4 + 7);
+}
+
+TEST(Stall, waits_while_the_residual_halves_now_and_then) {
+  EXPECT_EQ(given_up_at(7, [](int n) { return std::pow(0.9, n); }), -1) << "it halves in 6.6 iterations";
+  EXPECT_EQ(given_up_at(6, [](int n) { return std::pow(0.9, n); }), 6);
+}
+
+TEST(Stall, never_gives_up_unasked) {
+  EXPECT_EQ(given_up_at(0, [](int) { return 0.01; }), -1);
+}
+
+TEST(FrictionSmoothing, widens_by_tens_and_narrows_by_halves) {
+  FrictionSmoothing s{.smooths = true, .gravity_way = 2};
+  EXPECT_EQ(s.slip(), 2e-5);
+  EXPECT_DOUBLE_EQ(s.head_start(), 2e-3);
+  int times = 0;
+  while (s.widen()) ++times;
+  EXPECT_EQ(times, 4);
+  EXPECT_EQ(s.width, FrictionSmoothing::widest);
+  EXPECT_TRUE(s.too_wide_for(0.1));
+  EXPECT_FALSE(s.too_wide_for(10));
+  s.narrow_after(100);
+  EXPECT_EQ(s.width, FrictionSmoothing::widest) << "that step did not converge well";
+  s.narrow_after(3);
+  EXPECT_EQ(s.width, 0.5 * FrictionSmoothing::widest);
+  for (int i = 0; i < 9; ++i) s.narrow();
+  EXPECT_EQ(s.width, FrictionSmoothing::narrowest);
+  EXPECT_FALSE(s.too_wide_for(0));
+  s.smooths = false;
+  EXPECT_FALSE(s.widen());
 }
 
 }  // namespace

@@ -1,13 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Validation B1: a block on an incline accelerates with g (sin t - mu cos t), or stays where mu > tan t.
-#include <limits>
-#include <numbers>
-
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -49,19 +42,14 @@ class BlockOnIncline : public InEachPlace {
 TEST_P(BlockOnIncline, slides_as_coulomb_says) {
   for (const Incline c : {Incline{30, 0, 20, 4}, Incline{30, 37, 20, 4}, Incline{30, 90, 20, 1}, Incline{45, 60, 25, 2},
                           Incline{20, 200, 5, 1}, Incline{30, 0, 20, 1}, Incline{45, 135, 10, 4}}) {
-    const Domain d = domain(c, 6);
-    const SolveOptions o = options(c);
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    const Centre start = centre(*solver, scene);
+    const SceneRun run(domain(c, 6), options(c), GetParam());
     constexpr double time = 2;
-    run_to(*solver, time);
     const double acceleration =
         9.81 * (std::sin(c.angle * degree) - std::tan(c.friction * degree) * std::cos(c.angle * degree));
     const double expected = 0.5 * acceleration * time * time * std::cos(c.angle * degree);
     // validation.md B1: 1 % at four cells, 3 % at one.
     const double tolerance = c.layers >= 4 ? 0.01 : c.layers >= 2 ? 0.02 : 0.03;
-    const double error = way(start, centre(*solver, scene)) / expected - 1;
+    const double error = way(run.first, run.at(time)) / expected - 1;
     RecordProperty(std::to_string(c.angle) + "_" + std::to_string(c.layers), std::to_string(error));
     std::printf("  incline %g deg towards %g, bed %g deg, %d cells: error %.3f %%\n", c.angle, c.direction, c.friction,
                 c.layers, 100 * error);
@@ -71,33 +59,24 @@ TEST_P(BlockOnIncline, slides_as_coulomb_says) {
 
 TEST_P(BlockOnIncline, stays_below_its_friction_angle) {
   const Incline c{25, 30, 30, 2};
-  const Domain d = domain(c, 6);
-  const SolveOptions o = options(c);
-  const Scene scene = make_scene(d, o);
-  const auto solver = make_solver(scene, o, GetParam());
-  run_to(*solver, 1);  // the jolt of sudden gravity
-  const Centre start = centre(*solver, scene);
-  run_to(*solver, 11);
+  const SceneRun run(domain(c, 6), options(c), GetParam());
+  const Centre start = run.at(1);  // the jolt of sudden gravity
   // Less than 1e-4 of its length in 60 s, so a sixth of that in 10 s.
-  EXPECT_LT(way(start, centre(*solver, scene)), 6 * 1e-4 / 6);
+  EXPECT_LT(way(start, run.at(11)), 6 * 1e-4 / 6);
 }
 
 TEST_P(BlockOnIncline, weakens_with_speed) {
   // On the way already: at rest the law's steep start would magnify the jolt of sudden gravity.
   const Incline c{30, 0, 0, 2};
   constexpr double first_speed = 1;
-  const Domain d = domain(c, 6);
   SolveOptions o = options(c);
   o.initial_velocity = {first_speed * std::cos(30 * degree), 0, -first_speed * std::sin(30 * degree)};
   o.base.law = FrictionLaw::velocity_weakening;
   o.base.peak_coefficient = 0.5;
   o.base.steady_coefficient = 0.2;
   o.base.characteristic_speed = 2;
-  const Scene scene = make_scene(d, o);
-  const auto solver = make_solver(scene, o, GetParam());
-  const Centre start = centre(*solver, scene);
+  const SceneRun run(domain(c, 6), o, GetParam());
   constexpr double time = 2;
-  run_to(*solver, time);
   double v = first_speed, s = 0;  // dv/dt = g (sin - mu(v) cos), midpoint rule at 1e-5 s
   constexpr int steps = 200000;
   const auto pull = [&](double speed) {
@@ -108,7 +87,7 @@ TEST_P(BlockOnIncline, weakens_with_speed) {
     s += dt * (v + 0.5 * dt * pull(v));
     v += dt * pull(mid);
   }
-  const double error = way(start, centre(*solver, scene)) / (s * std::cos(30 * degree)) - 1;
+  const double error = way(run.first, run.at(time)) / (s * std::cos(30 * degree)) - 1;
   std::printf("  velocity weakening: error %.3f %%\n", 100 * error);
   EXPECT_LT(std::abs(error), 0.01);  // validation.md B2
 }
@@ -122,7 +101,6 @@ TEST_P(BlockOnIncline, is_slowed_by_drag_and_cohesion) {
   constexpr double time = 2;
   for (const auto integrator : {Integrator::explicit_, Integrator::newmark}) {
     for (const bool drag : {true, false}) {
-      const Domain d = domain(c, 6);
       SolveOptions o = options(c);
       o.integrator = integrator;
       o.implicit.step = 0.005;
@@ -137,11 +115,8 @@ TEST_P(BlockOnIncline, is_slowed_by_drag_and_cohesion) {
         o.base.cohesion = 4000;
         expected = 0.5 * (pull - o.base.cohesion / (o.material.density * across)) * time * time;
       }
-      const Scene scene = make_scene(d, o);
-      const auto solver = make_solver(scene, o, GetParam());
-      const Centre start = centre(*solver, scene);
-      run_to(*solver, time);
-      const double error = way(start, centre(*solver, scene)) / (expected * std::cos(c.angle * degree)) - 1;
+      const SceneRun run(domain(c, 6), o, GetParam());
+      const double error = way(run.first, run.at(time)) / (expected * std::cos(c.angle * degree)) - 1;
       const double unhindered = 0.5 * pull * time * time;
       std::printf("  %s, %s: error %.3f %% (without it %.0f %%)\n",
                   integrator == Integrator::newmark ? "newmark" : "explicit", drag ? "drag" : "cohesion", 100 * error,
@@ -155,18 +130,14 @@ TEST_P(BlockOnIncline, is_slowed_by_drag_and_cohesion) {
 TEST_P(BlockOnIncline, is_held_by_cohesion_alone) {
   const Incline c{20, 0, 0, 2};
   for (const auto integrator : {Integrator::explicit_, Integrator::newmark}) {
-    const Domain d = domain(c, 6);
     SolveOptions o = options(c);
     o.integrator = integrator;
     o.base.cohesion = 2 * 2 * o.material.density * 9.81 * std::sin(c.angle * degree) *
                       std::cos(c.angle * degree);  // twice what is needed
     o.material.youngs_modulus = 1e8;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    run_to(*solver, 1);
-    const Centre start = centre(*solver, scene);
-    run_to(*solver, 3);
-    EXPECT_LT(way(start, centre(*solver, scene)), 1e-3);
+    const SceneRun run(domain(c, 6), o, GetParam());
+    const Centre start = run.at(1);
+    EXPECT_LT(way(start, run.at(3)), 1e-3);
   }
 }
 
@@ -186,11 +157,8 @@ TEST_P(BlockOnIncline, takes_the_bed_from_rasters) {
     SolveOptions o = options(c);
     o.base.friction_angle = uniform;
     o.base.pore_pressure_ratio = pore_pressure;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    const Centre start = centre(*solver, scene);
-    run_to(*solver, 2);
-    return way(start, centre(*solver, scene));
+    const SceneRun run(d, o, GetParam());
+    return way(run.first, run.at(2));
   };
   const double plain = way_with(nullptr, 20, 0), nothing = std::numeric_limits<double>::quiet_NaN();
   const double tolerance = GetParam() == On::cpu ? 0 : 1e-9;  // sums in another order

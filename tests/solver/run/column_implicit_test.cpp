@@ -2,15 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps with inertia implicit along columns: closed forms of a block and a slab in steps that the height of the layers
 // does not bound, and the deposit of explicit steps.
-#include <cmath>
-#include <numbers>
-
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/run/speed_inside.hpp"
-#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -55,12 +47,9 @@ struct Ran {
 class ColumnImplicit : public InEachPlace {
  protected:
   Ran ran(const LayeredBlock& block, const SolveOptions& o, double time) {
-    const Scene scene = make_scene(block.domain(), o);
-    const auto solver = make_solver(scene, o, GetParam());
-    const Centre start = centre(*solver, scene);
-    run_to(*solver, time);
-    const Centre end = centre(*solver, scene);
-    return {std::hypot(end.x - start.x, end.y - start.y), solver->clock().step};
+    const SceneRun run(block.domain(), o, GetParam());
+    const Centre end = run.at(time);
+    return {std::hypot(end.x - run.first.x, end.y - run.first.y), run.solver->clock().step};
   }
 };
 
@@ -109,8 +98,7 @@ TEST_P(ColumnImplicit, throw_no_point_that_lands_by_itself) {
   SolveOptions o = LayeredBlock{45, 20, 0.1}.options();
   o.material.model = MaterialModel::drucker_prager;
   o.cfl = 1.5;
-  const Scene scene = make_scene(d, o);
-  const auto solver = make_solver(scene, o, GetParam());
+  const auto solver = make_solver(make_scene(d, o), o, GetParam());
   for (int n = 1; n <= 30; ++n) {
     run_to(*solver, 0.1 * n);
     const double fallen = 4 + 0.5 * 9.81 * n * n * 0.01;  // no further down than in free fall
@@ -129,11 +117,8 @@ TEST_P(ColumnImplicit, keep_a_post_of_single_points_standing) {
     o.material.youngs_modulus = 2e6;
     o.cfl = cfl;
     o.damping = 0.3;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    const double start = centre(*solver, scene).z;
-    run_to(*solver, 3);
-    return start - centre(*solver, scene).z;
+    const SceneRun run(d, o, GetParam());
+    return run.first.z - run.at(3).z;
   };
   const double expected = 2000 * 9.81 * 4 * 4 / 3 / 2e6;  // rho g H^2 / (3 E) in the mean
   for (const auto& [model, cfl] : {std::pair{MaterialModel::hencky, 0.9}, {MaterialModel::drucker_prager, 0.5}}) {
@@ -188,15 +173,12 @@ TEST_P(ColumnImplicit, slide_on_cartesian_grids_and_on_walls) {
     o.mapping = Mapping::cartesian;
     o.gravity = {g * std::sin(angle * to_radians), 0, -g * std::cos(angle * to_radians)};
     if (on_wall) o.walls.push_back({Axis::z, 1.0, Side::above, WallKind::frictional, friction});
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    const Centre start = centre(*solver, scene);
-    run_to(*solver, time);
-    const Centre end = centre(*solver, scene);
+    const SceneRun run(d, o, GetParam());
+    const Centre end = run.at(time);
     std::printf("  Cartesian%s: error %.3f %%, %lld steps\n", on_wall ? ", on a wall" : "",
-                100 * ((end.x - start.x) / expected - 1), static_cast<long long>(solver->clock().step));
-    EXPECT_NEAR(end.x - start.x, expected, 0.01 * expected);  // validation.md B1
-    EXPECT_NEAR(end.z, start.z, 0.02);
+                100 * ((end.x - run.first.x) / expected - 1), static_cast<long long>(run.solver->clock().step));
+    EXPECT_NEAR(end.x - run.first.x, expected, 0.01 * expected);  // validation.md B1
+    EXPECT_NEAR(end.z, run.first.z, 0.02);
   }
 }
 
@@ -273,12 +255,10 @@ TEST_P(ColumnImplicit, come_to_rest_under_damping_where_explicit_steps_do) {
   const auto settled = [&](Integrator integrator) {
     SolveOptions o = b.options(integrator, b.step());
     o.damping = 0.5;
-    const Scene scene = make_scene(b.domain(), o);
-    const auto solver = make_solver(scene, o, GetParam());
-    const double start = centre(*solver, scene).z;
-    run_to(*solver, 20 * b.period(b.step(), column_kappa));
-    EXPECT_LT(solver->energies().kinetic, 1e-6 * solver->energies().elastic);
-    return start - centre(*solver, scene).z;
+    const SceneRun run(b.domain(), o, GetParam());
+    const Centre end = run.at(20 * b.period(b.step(), column_kappa));
+    EXPECT_LT(run.solver->energies().kinetic, 1e-6 * run.solver->energies().elastic);
+    return run.first.z - end.z;
   };
   // Confined modulus 1.2 E: rho g H^2 / (3 M) in the mean; layers of an eighth cost a twentieth of it.
   const double expected = Bounce::density * 9.81 * b.height() * b.height() / 3 / (1.2 * Bounce::modulus);
@@ -306,8 +286,7 @@ struct Slump {
     o.base.friction_angle = 20;
     o.base.peak_coefficient = 0.6;
     o.base.steady_coefficient = 0.3;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, on);
+    const auto solver = make_solver(make_scene(d, o), o, on);
     run_to(*solver, 4);
     return {solver->thickness(), solver->clock().step};
   }

@@ -2,15 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Laws of depth-averaged models on a slab that flows down an incline: speeds, starts and stops of their closed forms,
 // for layers thinner and thicker than the slab, in explicit and in implicit steps.
-#include <cmath>
-#include <numbers>
-
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/run/speed_inside.hpp"
-#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {

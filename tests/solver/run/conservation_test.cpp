@@ -1,16 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What an explicit step must keep: mass, momentum, angular momentum, a body in free fall.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <random>
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -39,25 +33,21 @@ TEST_P(Conservation, falls_freely) {
   for (const auto transfer : {Transfer::apic, Transfer::flip}) {
     for (const auto shape : {ShapeKind::quadratic, ShapeKind::gimp, ShapeKind::linear}) {
       for (const auto update : {StressUpdate::last, StressUpdate::modified}) {
-        const Domain d = cube();
         SolveOptions o = options();
         o.gravity = {0, 0, -9.81};
         o.initial_velocity = {1.5, -0.5, 2};
         o.transfer = transfer;
         o.shape = shape;
         o.stress_update = update;
-        const Scene scene = make_scene(d, o);
-        const auto solver = make_solver(scene, o, GetParam());
-        const Centre start = centre(*solver, scene);
+        const SceneRun run(cube(), o, GetParam());
         constexpr double time = 1;
-        run_to(*solver, time);
-        const Centre end = centre(*solver, scene);
+        const Centre start = run.first, end = run.at(time);
         // Symplectic Euler moves with the new velocity: its fall leads the parabola by g dt t / 2, dt the mean step.
-        const double lead = 0.5 * 9.81 * time * time / static_cast<double>(solver->clock().step);
+        const double lead = 0.5 * 9.81 * time * time / static_cast<double>(run.solver->clock().step);
         EXPECT_NEAR(end.x - start.x, 1.5 * time, 1e-9);
         EXPECT_NEAR(end.y - start.y, -0.5 * time, 1e-9);
         EXPECT_NEAR(end.z - start.z, 2 * time - 0.5 * 9.81 * time * time, 1.1 * lead);
-        const Energies e = solver->energies();
+        const Energies e = run.solver->energies();
         EXPECT_NEAR(e.momentum.z / (216 * 1000), 2 - 9.81 * time, 1e-9);
         EXPECT_LT(e.elastic, 1e-9);
       }
@@ -251,8 +241,7 @@ TEST_P(Conservation, keeps_horizontal_momentum_on_smooth_ground) {
     o.base.law = FrictionLaw::none;
     o.initial_velocity = {2, -1, 0};
     o.material.youngs_modulus = 1e6;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
+    const auto solver = make_solver(make_scene(d, o), o, GetParam());
     const Energies start = solver->energies();
     run_to(*solver, 1.0);
     const Energies end = solver->energies();
@@ -272,13 +261,8 @@ TEST_P(Conservation, counts_what_leaves) {
   const Scene scene = make_scene(d, o);
   const double released = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   const auto solver = make_solver(scene, o, GetParam());
-  solver->set_next_event(1.0);
   double left = 0;
-  for (;;) {
-    const BatchReport batch = solver->advance();
-    left += batch.outflow_volume;
-    if (batch.clock.alarms.halt == at_event) break;
-  }
+  run_to(*solver, 1.0, [&](const BatchReport& batch) { left += batch.outflow_volume; });
   EXPECT_GT(left, 0);
   EXPECT_GT(solver->particle_count(), 0);
   EXPECT_NEAR(left + solver->energies().volume, released, 1e-12 * released);
@@ -292,8 +276,7 @@ TEST_P(Conservation, maps_the_points_volume) {
       SolveOptions o;
       o.precision = precision;
       o.shape = shape;
-      const Scene scene = make_scene(d, o);
-      const auto solver = make_solver(scene, o, GetParam());
+      const auto solver = make_solver(make_scene(d, o), o, GetParam());
       run_to(*solver, 0.3);
       const auto map = solver->thickness();
       const double on_map = 4.0 * std::accumulate(map.begin(), map.end(), 0.0);
@@ -317,8 +300,7 @@ TEST_P(Conservation, closes_the_energy_budget_of_a_slide) {
     o.damping = damping;
     o.material.cohesion = 1000;
     o.material.dilatancy_angle = 1;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
+    const auto solver = make_solver(make_scene(d, o), o, GetParam());
     const Energies start = solver->energies();
     run_to(*solver, 6.0);
     const Energies end = solver->energies();

@@ -1,14 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A section at the place of a dam that breaks over a dry bed, and gauges around it, against Ritter's closed form.
-#include <cmath>
 #include <cstdio>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "solver/options/solve.hpp"
 #include "tests/solver/run/recorders/recorded.hpp"
 
 namespace talus::solver::testing {

@@ -2,16 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From initiation to run-out in one run: a block that rests by Newmark's steps is pushed, and slides by steps implicit
 // along columns.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
 #include "solver/run/gravity_loading.hpp"
 #include "solver/run/stepper.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

@@ -1,15 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes that are hard on purpose (docs/explanation/validation.md, C): each ends with the invariant it names.
-#include <cmath>
 #include <cstdio>
 #include <random>
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/run/gravity_loading.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -72,8 +67,7 @@ TEST_P(HardCases, slivers_fly_with_the_body) {  // C4
     o.gravity = {0, 0, 0};
     o.initial_velocity = {3, -2, 1};
     o.implicit.step = 0.02;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
+    const auto solver = make_solver(make_scene(d, o), o, GetParam());
     run_to(*solver, 0.5);
     const ParticleState s = solver->state().points;
     double worst = 0;
@@ -143,8 +137,7 @@ TEST_P(HardCases, impact_on_rock_and_wall_balances_momentum) {
     o.base.law = law;
     o.base.friction_angle = 20;
     o.walls.push_back({Axis::x, 34.5, Side::below, WallKind::frictional, 15});
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
+    const auto solver = make_solver(make_scene(d, o), o, GetParam());
     const Energies start = solver->energies();
     const double came = std::abs(start.momentum.x), mass = start.volume * o.material.density;
     double stopped = 0, time = 0;
@@ -182,13 +175,8 @@ TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C
       const Scene scene = make_scene(d, o);
       const double released = make_solver(scene, o, GetParam())->energies().volume;
       auto solver = make_solver(scene, o, GetParam());
-      solver->set_next_event(4);
       double left = 0;
-      for (BatchReport batch; batch.clock.alarms.halt != at_event;) {
-        batch = solver->advance();
-        ASSERT_NE(batch.clock.alarms.halt, failed) << "at " << batch.clock.time << " s";
-        left += batch.outflow_volume;
-      }
+      run_to(*solver, 4, [&](const BatchReport& batch) { left += batch.outflow_volume; });
       EXPECT_NEAR(solver->energies().volume + left, released, 1e-12 * released);
       const ParticleState s = solver->state().points;
       const auto places = positions(scene, s);
@@ -212,17 +200,14 @@ TEST_P(HardCases, a_deposit_stays_where_it_came_to_rest) {  // C8
     o.integrator = integrator;
     o.material.youngs_modulus =
         2e6;  // the weight of 10 m strains it by a tenth: the softest that is still at rest as a solid is
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    run_to(*solver, 60);
-    const Centre settled = centre(*solver, scene);
-    const double volume = solver->energies().volume;
-    run_to(*solver, 660);
-    const Centre later = centre(*solver, scene);
+    const SceneRun run(d, o, GetParam());
+    const Centre settled = run.at(60);
+    const double volume = run.solver->energies().volume;
+    const Centre later = run.at(660);
     const double creep = std::hypot(later.x - settled.x, later.y - settled.y, later.z - settled.z);
     std::printf("  at rest for 600 s: centre of mass moved by %.1e cells\n", creep / 2);
     EXPECT_LT(creep, 0.01 * 2);
-    EXPECT_EQ(solver->energies().volume, volume);
+    EXPECT_EQ(run.solver->energies().volume, volume);
   }
 }
 
@@ -316,8 +301,7 @@ TEST_P(HardCases, far_coordinates_and_other_sizes_change_nothing) {  // C10
     o.integrator = integrator;
     o.material.youngs_modulus = 1e6 * scale;  // the same in the scale of its own weight, and of time
     o.largest_step = 1e3;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
+    const auto solver = make_solver(make_scene(d, o), o, GetParam());
     run_to(*solver, 2 * std::sqrt(scale));
     std::vector<double> map = solver->thickness();
     for (double& t : map) t /= scale;
@@ -348,8 +332,7 @@ TEST_P(HardCases, single_precision_ends_within_the_discretisation_error) {  // C
     o.integrator = integrator;
     o.precision = precision;
     o.cfl = courant;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
+    const auto solver = make_solver(make_scene(d, o), o, GetParam());
     run_to(*solver, 15);
     return solver->thickness();
   };

@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that material enters over time: nothing is lost, a flow down a plane takes the depth and speed of the closed
 // form, and a restart in the middle goes on to the same bits.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
-#include <optional>
-#include <utility>
 
 #include "solver/run/run_loop.hpp"
 #include "solver/run/sanity.hpp"

@@ -3,20 +3,7 @@
 // Scenes of several materials, and materials that soften.
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include "common/run/run_file.hpp"
-
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/run/simulation.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -126,10 +113,7 @@ TEST_P(Parts, soften_as_they_slip) {
     o.material.softening_slip = slip;
     o.material.residual_friction_angle = 25;
     o.base.law = FrictionLaw::stick;
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
-    run_to(*solver, 3);
-    return centre(*solver, scene).z;
+    return SceneRun(d, o, GetParam()).at(3).z;
   };
   EXPECT_GT(height_after(2.5e4, 0), 2.8);
   const double loose = height_after(0, 0), softened = height_after(2.5e4, 0.1);

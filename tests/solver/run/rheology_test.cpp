@@ -2,18 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Slabs whose stress depends on the rate of shear, on an incline that holds their base: speeds and angles of the closed
 // forms.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <functional>
-#include <numbers>
-#include <utility>
-#include <vector>
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

@@ -1,14 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Separation of a mass from its bed: what is thrown over a crest, what falls, and what both cost in energy.
-#include <cmath>
 #include <cstdio>
-#include <memory>
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -58,17 +52,10 @@ class Separated : public InEachPlace {
     o.walls = {{Axis::y, 2, Side::above, WallKind::roller}, {Axis::y, 6, Side::below, WallKind::roller}};
     return o;
   }
-  /// A solver after some time.
-  struct Run {
-    Scene scene;
-    std::unique_ptr<Solver> solver;
-    Centre first;
+  /// A run after some time.
+  struct Run : SceneRun {
     Energies before;
-    Run(const Domain& d, const SolveOptions& o, On on, double time)
-        : scene(make_scene(d, o)),
-          solver(make_solver(scene, o, on)),
-          first(centre(*solver, scene)),
-          before(solver->energies()) {
+    Run(const Domain& d, const SolveOptions& o, On on, double time) : SceneRun(d, o, on), before(solver->energies()) {
       run_to(*solver, time);
     }
     std::vector<std::array<double, 3>> places() const { return positions(scene, solver->state().points); }
@@ -84,10 +71,10 @@ TEST_P(Separated, a_slab_flies_off_a_crest_that_bends_faster_than_it_falls) {
   // edge off over a cell to either side.
   const double flight = time - (crest.edge - run.first.x) / Crest::speed, apart = 0.2 * 0.2 / 3;
   const double early = flight + 1 / Crest::speed;
-  const double fallen = run.first.z - centre(*run.solver, run.scene).z, before = run.solver->energies().momentum.z;
+  const double fallen = run.first.z - run.now().z, before = run.solver->energies().momentum.z;
   EXPECT_GT(fallen, 0.5 * pull * (flight * flight + apart));
   EXPECT_LT(fallen, 0.5 * pull * (early * early + apart));
-  EXPECT_NEAR(centre(*run.solver, run.scene).x, run.first.x + Crest::speed * time, 0.05);
+  EXPECT_NEAR(run.now().x, run.first.x + Crest::speed * time, 0.05);
   run_to(*run.solver, time + 0.1);
   EXPECT_NEAR(run.solver->energies().momentum.z - before, -run.mass() * pull * 0.1, 1e-9 * run.mass()) << "all of it";
   std::printf("  fallen %.3f m (%.3f to %.3f in flight)\n", fallen, 0.5 * pull * (flight * flight + apart),
@@ -115,7 +102,7 @@ TEST_P(Separated, a_slab_that_may_not_leave_its_bed_slides_over_the_crest) {
       high += 0.5 * crest.thickness * Crest::speed / crest.pace(there) / parts;  // what slows along x gets thicker
     }
     const Energies e = run.solver->energies();
-    const double x = centre(*run.solver, run.scene).x, way = ahead - run.first.x;
+    const double x = run.now().x, way = ahead - run.first.x;
     const double gained = run.before.kinetic + run.before.potential - e.potential;
     std::printf(
         "  %g m in layers of %g m: %.3f m high (%.3f), way %.2f %% off, kinetic energy %.2f %%, holding %.2f %%\n",

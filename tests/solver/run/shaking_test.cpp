@@ -2,17 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ground that shakes: a block slides on its plane as Newmark (1965) says, and a free mass takes up the integral of the
 // accelerogram, with every integrator.
-#include <cmath>
 #include <cstdio>
-#include <memory>
-#include <string>
 
 #include "solver/boundary/column_flow.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/run/gravity_loading.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "solver/state/gravity.hpp"
 #include "solver/state/shaking.hpp"
 #include "tests/common/shaken_block.hpp"

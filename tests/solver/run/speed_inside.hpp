@@ -3,10 +3,6 @@
 // The speed of the inside of a slab on a slope, away from its ends.
 #pragma once
 
-#include <cmath>
-#include <numbers>
-
-#include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "tests/solver/scenes.hpp"
 

@@ -1,15 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thin flows on an incline: a slab under Voellmy's drag reaches the closed form's speed, however it lies in the grid.
-#include <cmath>
-#include <numbers>
+// Thin flows on an incline at the closed form's speed, and a Bingham dam break that comes to rest.
+#include <cstdio>
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/run/speed_inside.hpp"
-#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -63,6 +57,52 @@ TEST_P(ThinFlow, reaches_the_speed_at_which_drag_and_weight_balance) {
 }
 
 TALUS_IN_EACH_PLACE(ThinFlow);
+
+class BinghamSlump : public InEachPlace {};
+
+/// Shallow mud rests where the pressure of its slope is what its base holds, rho g h |dh/dx| = tau_y (Liu & Mei 1989),
+/// so that h^2 = (2 tau_y / (rho g)) (x_f - x). The area A behind the front is sqrt(2 tau_y / (rho g)) (2 / 3) x_f^1.5.
+TEST_P(BinghamSlump, rests_in_the_shape_that_its_yield_stress_holds) {
+  constexpr double cell = 0.25, width = 4, height = 1, density = 1500, yield = 600;
+  Domain d = ground(48, 8, cell, 0.125, [](double, double) { return 0.0; });
+  d.grid.west = d.grid.south = -0.875;  // nodes at the walls
+  fill(d, {0, width, 0, cell, 0, height});
+  SolveOptions o;
+  o.material.model = MaterialModel::herschel_bulkley;
+  o.material.density = density;
+  o.material.youngs_modulus = 1e6;
+  o.material.poisson_ratio = 0.4;
+  o.material.yield_stress = yield;
+  o.material.consistency = 30;
+  o.base.law = FrictionLaw::stick;
+  o.walls = {{Axis::x, 0, Side::above, WallKind::roller},
+             {Axis::y, 0, Side::above, WallKind::roller},
+             {Axis::y, cell, Side::below, WallKind::roller}};
+  const Scene scene = make_scene(d, o);
+  const auto solver = make_solver(scene, o, GetParam());
+  run_to(*solver, 5);
+  const double steep = 2 * yield / (density * 9.81), front = std::pow(1.5 * width * height / std::sqrt(steep), 2.0 / 3);
+  const std::vector<double> all = solver->thickness();
+  double squares = 0, reference = 0, farthest = 0;
+  for (int i = 0; i < d.grid.columns; ++i) {
+    const double x = d.grid.x(i), exact = std::sqrt(steep * std::max(front - x, 0.0));
+    if (x < 0.5 * cell) continue;  // half of the column lies behind the wall
+    double h = 0;                  // the strip is one cell wide
+    for (int j = 0; j < d.grid.rows; ++j) h += all[d.grid.index(i, j)];
+    squares += (h - exact) * (h - exact);
+    reference += exact * exact;
+    if (h > 0.1) farthest = x;
+  }
+  const double misfit = std::sqrt(squares / reference), speed = centre(*solver, scene).speed;
+  std::printf("  slump: 10 cm thick at %.2f m (%.2f m), misfit %.1f %%, %.4f m/s\n", farthest, front - 0.01 / steep,
+              100 * misfit, speed);
+  EXPECT_NEAR(farthest, front - 0.01 / steep, 1.5 * cell);
+  // Thickness over a cell, and a front that is steeper than shallow mud knows.
+  EXPECT_LT(misfit, 0.05);
+  EXPECT_LT(speed, 0.01) << "it rests";
+}
+
+TALUS_IN_EACH_PLACE(BinghamSlump);
 
 }  // namespace
 }  // namespace talus::solver::testing

@@ -3,8 +3,6 @@
 // How densely points may lie that nothing moved but chance and their own weight (docs/notes/grid-and-transfer.md).
 #pragma once
 
-#include <cmath>
-
 #include "solver/options/solve.hpp"
 
 namespace talus::solver::testing {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/solver/samples/sample_scene.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace talus::solver::testing {
@@ -118,16 +116,7 @@ SampleRun::SampleRun(const SampleScene& scene, On on)
       released_(std::accumulate(scene_.points.volume.begin(), scene_.points.volume.end(), 0.0)) {}
 
 void SampleRun::run_to(double time) {
-  solver_->set_next_event(time);
-  for (;;) {
-    const BatchReport batch = solver_->advance();
-    left_ += batch.outflow_volume;
-    if (batch.clock.alarms.halt == failed) {
-      ADD_FAILURE() << "point " << batch.clock.alarms.failed_point << " failed at " << batch.clock.time << " s";
-      return;
-    }
-    if (batch.clock.alarms.halt == at_event) return;
-  }
+  testing::run_to(*solver_, time, [&](const BatchReport& batch) { left_ += batch.outflow_volume; });
 }
 
 std::vector<PointSeen> SampleRun::points() const {

@@ -3,12 +3,7 @@
 // Scenes on the terrains of data_samples/hard_terrains.hpp, made in memory, and what is measured of their runs.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "data_samples/hard_terrains.hpp"
-#include "solver/options/solve.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

@@ -3,22 +3,12 @@
 // A checkpoint gives back, bit for bit, all that was written, and other files are refused in words.
 #include "solver/run/recorders/checkpoint.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <memory>
 #include <set>
-#include <vector>
 
 #include "common/run/sealed_file.hpp"
 #include "common/stage/checksum.hpp"
 #include "solver/run/recorders/check_checkpoint.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "solver/state/contact_state.hpp"
 #include "solver/state/particle_fields.hpp"
 #include "tests/common/scratch.hpp"
@@ -243,12 +233,8 @@ TEST_P(CheckpointBetweenSorts, leads_to_the_same_slide_wherever_the_run_goes_on)
   double after[2] = {left, left};
   const double end = unbroken->clock().time + 1;
   for (int n = 0; n < 2; ++n) {
-    Solver& solver = n == 0 ? *unbroken : *resumed;
-    solver.set_next_event(end);
-    for (BatchReport batch; batch.clock.time < end;) {
-      batch = solver.advance();
-      after[n] += batch.outflow_volume;
-    }
+    testing::run_to(n == 0 ? *unbroken : *resumed, end,
+                    [&](const BatchReport& batch) { after[n] += batch.outflow_volume; });
   }
   const Energies a = unbroken->energies(), b = resumed->energies();
   EXPECT_GT(after[0], left);

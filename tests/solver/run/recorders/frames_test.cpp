@@ -1,16 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames: written beside the run, in run.h5 at its end.
+// Frames, written beside the run and in run.h5 at its end; work beside the run.
 #include "solver/run/recorders/frames.hpp"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
 #include <numeric>
-#include <string>
 
 #include "solver/run/recorders/frame_store.hpp"
-#include "solver/scene/make_solver.hpp"
+#include "solver/run/recorders/side_work.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/solver/scenes.hpp"
 
@@ -68,6 +64,30 @@ TEST(FrameStore, keeps_the_frames_of_runs_apart) {
   EXPECT_NE(fault.find("frame_00001.h5: a frame of the run b2 (this is the run a1)"), std::string::npos) << fault;
   store.drop_others();
   EXPECT_EQ(test::names_in(scratch / "frames"), std::vector<std::string>{"a1"});
+}
+
+TEST(side_work, pieces_are_done_one_after_the_other) {
+  std::string done;
+  SideWork work;
+  for (const char* piece : {"a", "b", "c"}) work.start([&done, piece] { done += piece; });
+  work.settle();
+  EXPECT_EQ(done, "abc");
+}
+
+TEST(side_work, an_error_is_thrown_where_the_next_piece_is_started) {
+  SideWork work;
+  bool ran = false;
+  work.start([] { throw std::runtime_error("disk"); });
+  EXPECT_THROW(work.start([&ran] { ran = true; }), std::runtime_error);
+  work.settle();
+  EXPECT_FALSE(ran);
+}
+
+TEST(side_work, an_error_is_thrown_where_it_is_waited_for) {
+  SideWork work;
+  work.start([] { throw std::runtime_error("disk"); });
+  EXPECT_THROW(work.settle(), std::runtime_error);
+  work.settle();  // and only once
 }
 
 }  // namespace

@@ -3,16 +3,8 @@
 // Gauges: what they read of a block that slides past, and which are refused.
 #include "solver/run/recorders/gauges.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "solver/options/output.hpp"
-#include "solver/run/recorders/history.hpp"
-#include "solver/scene/make_solver.hpp"
-#include "tests/solver/scenes.hpp"
+#include "tests/solver/run/recorders/recorded.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -43,34 +35,14 @@ SolveOptions rigid_on_ice(Integrator integrator) {
 double way(double time) { return 0.5 * gravity * std::sin(slope_angle) * std::cos(slope_angle) * time * time; }
 double speed(double time) { return gravity * std::sin(slope_angle) * time; }
 
-class Gauges : public InEachPlace {
- protected:
-  /// The history of a run, a record every `interval`.
-  static RunHistory record(const SolveOptions& o, double end, double interval) {
-    const Domain d = block_on_slope();
-    const Scene scene = make_scene(d, o);
-    History history(o, scene);
-    const auto solver = make_solver(scene, o, GetParam());
-    const RunMemory counted;
-    for (int row = 0; row * interval < end + 0.5 * interval; ++row) {
-      if (row > 0) run_to(*solver, row * interval);
-      history.record({.time = row * interval,
-                      .clock = solver->clock(),
-                      .energies = solver->energies(),
-                      .step_over_cfl = 0,
-                      .counted = counted,
-                      .solver = *solver});
-    }
-    return history.rows();
-  }
-};
+class Gauges : public InEachPlace {};
 
 TEST_P(Gauges, read_thickness_speed_and_surface_of_a_block_that_slides_past) {
   constexpr double at = 24.3, end = 3.2;  // the block's front comes after 1.7 s, its end goes after 2.6 s
   for (const Integrator integrator : {Integrator::explicit_, Integrator::newmark}) {
     SolveOptions o = rigid_on_ice(integrator);
     o.gauges = {{.name = "mid-slope", .x = at, .y = 11.8}, {.name = "aside", .x = at, .y = 3}};
-    const RunHistory history = record(o, end, 0.1);
+    const RunHistory history = recorded(block_on_slope(), o, GetParam(), end, 0.1);
     const auto column = [&](const char* name) { return history.at(name).values; };
     const auto time = column("time_s"), thickness = column("gauge_mid-slope_thickness_m"),
                fast = column("gauge_mid-slope_speed_m_s"), surface = column("gauge_mid-slope_surface_m");
@@ -106,7 +78,7 @@ TEST_P(Gauges, read_at_the_centre_of_a_cell_what_the_map_shows_there) {
   const auto solver = make_solver(scene, o, GetParam());
   const std::vector<double> map = solver->thickness();
   const auto cell = scene.map.index(static_cast<int>(block_from), 12);
-  const RunHistory history = record(o, 0, 1);
+  const RunHistory history = recorded(block_on_slope(), o, GetParam(), 0, 1);
   EXPECT_DOUBLE_EQ(history.at("gauge_rim_thickness_m").values[0], map[cell]);
   EXPECT_NEAR(history.at("gauge_between_thickness_m").values[0], 0.5 * (map[cell] + map[cell + 1]), 1e-12);
   EXPECT_NEAR(history.at("gauge_rim_speed_m_s").values[0], 5, 1e-12);

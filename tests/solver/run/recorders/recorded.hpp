@@ -16,12 +16,8 @@ RunHistory recorded(const Domain& d, const SolveOptions& o, On on, double end, d
   const auto solver = make_solver(scene, o, on);
   RunMemory counted;
   for (int row = 0; row * interval < end + 0.5 * interval; ++row) {
-    solver->set_next_event(row * interval);
-    for (bool on_the_way = row > 0; on_the_way;) {
-      const BatchReport batch = solver->advance();
-      counted.outflow_volume += batch.outflow_volume;
-      on_the_way = batch.clock.alarms.halt != at_event && batch.clock.alarms.halt != failed;
-    }
+    const auto count = [&](const BatchReport& batch) { counted.outflow_volume += batch.outflow_volume; };
+    if (row > 0) run_to(*solver, row * interval, count);
     history.record({.time = row * interval,
                     .clock = solver->clock(),
                     .energies = solver->energies(),

@@ -3,8 +3,6 @@
 // How trials are computed.
 #include "solver/run/stability/trial_settings.hpp"
 
-#include <gtest/gtest.h>
-
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
