@@ -1,11 +1,17 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bed: impulses of a base node.
+// The bed at base nodes and columns: impulses, how far the ground turns, what is held and what landing takes.
 #include "solver/boundary/base_friction.hpp"
 
 #include <gtest/gtest.h>
 
-namespace talus {
+#include "solver/boundary/bed_hold.hpp"
+#include "solver/boundary/contact_impulses.hpp"
+#include "solver/boundary/ground_turn.hpp"
+#include "solver/boundary/separation.hpp"
+#include "tests/solver/small_grid.hpp"
+
+namespace talus::solver::testing {
 namespace {
 
 BaseFriction<double> coulomb(double mu) { return {FrictionLaw::coulomb, {{mu}}}; }
@@ -52,5 +58,172 @@ TEST(BaseFriction, weakens_from_peak_to_steady_state) {
   EXPECT_NEAR(f.coefficient(f.uniform, {1e9, 0, 0.01}), 0.2, 1e-8);
 }
 
+/// Ground z = a x^2 / 2 + c x y + e y^2 / 2, whose slopes change evenly.
+struct CurvedGrid {
+  static constexpr double a = 0.02, c = -0.01, e = 0.03;
+  SmallGrid grid;
+
+  CurvedGrid() {
+    for (int j = 0; j < SmallGrid::side; ++j) {
+      for (int i = 0; i < SmallGrid::side; ++i) {
+        const double x = i * grid.spacing, y = j * grid.spacing;
+        const auto n = static_cast<std::size_t>(j * SmallGrid::side + i);
+        grid.slope_x[n] = a * x + c * y;
+        grid.slope_y[n] = c * x + e * y;
+      }
+    }
+  }
+};
+
+TEST(GroundTurn, is_the_climb_beyond_the_slopes_under_the_node) {
+  const CurvedGrid ground;
+  const Vec3<double> v{6, -4, 1};
+  const double dt = 0.25, bend = ground.a * 36 - 2 * ground.c * 24 + ground.e * 16;
+  for (const int i : {0, 3, 7}) {
+    for (const int j : {0, 4, 7}) EXPECT_NEAR(climb_ahead(ground.grid.view(), i, j, v, dt), dt / 2 * bend, 1e-14);
+  }
+  const double sx = ground.a * 6 + ground.c * 8, sy = ground.c * 6 + ground.e * 8;
+  EXPECT_NEAR(turn_of_ground(ground.grid.view(), 3, 4, v, dt), dt / 2 * bend / std::sqrt(1 + sx * sx + sy * sy), 1e-14);
+  const SmallGrid plane(0.5, -0.25);
+  EXPECT_EQ(turn_of_ground(plane.view(), 3, 4, v, dt), 0);
+}
+
+TEST(GroundTurn, is_what_a_node_keeps_of_its_velocity_across_the_bed) {
+  const Vec3<double> up{0, 0, 1};
+  // A hollow that turns by 0.5 m/s: a node that slides level is pushed up, and friction takes its share of that.
+  Vec3<double> v = meet_surface(Vec3<double>{10, 0, 0}, up, 0.4, 0.5);
+  EXPECT_NEAR(v.z, 0.5, 1e-15);
+  EXPECT_NEAR(v.x, 10 - 0.4 * 0.5, 1e-14);
+  // A hump that falls away by 0.5 m/s: down to there the node is free, below it the ground holds.
+  v = meet_surface(Vec3<double>{10, 0, -0.3}, up, 0.4, -0.5);
+  EXPECT_EQ(v.z, -0.3);
+  EXPECT_EQ(v.x, 10);
+  v = meet_surface(Vec3<double>{10, 0, -0.7}, up, 0.4, -0.5);
+  EXPECT_NEAR(v.z, -0.5, 1e-15);
+  EXPECT_NEAR(v.x, 10 - 0.4 * 0.2, 1e-14);
+}
+
+/// A column of two nodes of 100 kg on a slope, normal (-0.6, 0, 0.8), and one that flies above them.
+struct HeldColumn {
+  SmallGrid grid{0.75, 0};
+  Clock clock;
+  std::vector<Vec4<double>> nodes = std::vector<Vec4<double>>(SmallGrid::nodes), changes = nodes;
+  std::vector<double> lying = std::vector<double>(64), rise = std::vector<double>(64, 1), pressed = lying;
+  Walls<double> walls;
+  static constexpr std::size_t column = 2 * SmallGrid::side + 5;
+
+  /// Speeds along the slope and away from it of the three [m/s].
+  explicit HeldColumn(double along, double base, double above) {
+    clock.budget.is_kept = 1;
+    clock.step_size = 0.1;
+    put(0, along, base);
+    put(1, along, above);
+    put(4, along, 3);
+  }
+  Vec4<double>& at(int k) { return nodes[static_cast<std::size_t>(grid.view().find(5, 2, k))]; }
+  void put(int k, double along, double away) { at(k) = {100, 0.8 * along - 0.6 * away, 0, 0.6 * along + 0.8 * away}; }
+  double away(int k) { return -0.6 * at(k).x + 0.8 * at(k).z; }
+  double along(int k) { return 0.8 * at(k).x + 0.6 * at(k).z; }
+  void hold(const HeldColumns<double>& held = {}) {
+    for_each(CpuDevice::make(), 4 * block_columns,
+             HoldColumns<double, PackedNodes<double>>{.grid = grid.view(),
+                                                      .active = grid.active.data(),
+                                                      .clock = &clock,
+                                                      .nodes = {nodes.data(), changes.data()},
+                                                      .walls = walls,
+                                                      .held = held,
+                                                      .rise = rise.data()});
+  }
+};
+
+TEST(HoldColumns, takes_what_the_column_leaves_by_as_a_whole) {
+  HeldColumn c(5, 2, 2);
+  c.hold();
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_NEAR(c.away(k), 0, 1e-14);
+    EXPECT_NEAR(c.along(k), 5, 1e-14) << "a pull gives no friction";
+  }
+  EXPECT_NEAR(c.away(4), 3, 1e-14) << "what flies above is left alone";
+  EXPECT_EQ(c.rise[HeldColumn::column], 0) << "it lies on the bed";
+  EXPECT_NEAR(c.clock.budget.holding_loss, 0.5 * 200 * 2 * 2, 1e-10);
+  EXPECT_NEAR(c.clock.budget.bed_loss + c.clock.budget.transfer_loss, 0, 1e-10);
+  EXPECT_NEAR(c.clock.budget.reaction[0], 200 * 2 * 0.6, 1e-10);
+  EXPECT_NEAR(c.clock.budget.reaction[2], -200 * 2 * 0.8, 1e-10);
+  EXPECT_NEAR(c.changes[static_cast<std::size_t>(c.grid.view().find(5, 2, 1))].z, -2 * 0.8, 1e-14);
+}
+
+TEST(HoldColumns, takes_no_more_than_base_node_and_column_have) {
+  HeldColumn thickens(5, 0.5, 3);  // the mean rises faster than the base: it gets thicker
+  thickens.hold();
+  EXPECT_NEAR(thickens.away(0), 0, 1e-14);
+  EXPECT_NEAR(thickens.away(1), 2.5, 1e-14);
+  HeldColumn sinks(5, 0.5, -3);  // the base springs back under what comes down: that is not pushed
+  sinks.hold();
+  EXPECT_NEAR(sinks.away(0), 0, 1e-14);
+  EXPECT_NEAR(sinks.away(1), -3, 1e-14);
+}
+
+TEST(HoldColumns, leaves_alone_what_presses) {
+  HeldColumn c(5, 0, 2);
+  const auto before = c.nodes;
+  c.hold();
+  for (std::size_t n = 0; n < before.size(); ++n) EXPECT_EQ(c.nodes[n].z, before[n].z);
+  EXPECT_EQ(c.clock.budget.holding_loss, 0);
+}
+
+TEST(HoldColumns, stays_before_a_wall_that_the_nodes_have_met) {
+  HeldColumn c(0, 2, 2);
+  c.walls.count = 1;
+  c.walls.list[0] = {.axis = 0, .side = -1, .position = 5, .kind = WallKind::roller};  // holds columns from 5 on
+  c.at(0) = c.at(1) = {100, 0, 0, 2};
+  c.hold();
+  EXPECT_EQ(c.at(1).x, 0);
+}
+
+TEST(HoldColumns, holds_up_to_the_depth_of_what_lies_on_the_bed) {
+  HeldColumn c(5, 2, 2);
+  for_each(CpuDevice::make(), 4 * block_columns,
+           MeasureLying<double, PackedNodes<double>>{
+               c.grid.view(), c.grid.active.data(), &c.clock, {c.nodes.data(), nullptr}, c.lying.data()});
+  EXPECT_EQ(c.lying[HeldColumn::column], 200) << "without what flies";
+  EXPECT_EQ(c.lying[0], 0);
+  constexpr double depth = 200.0 / (2000 * 4 * 1.25);  // on a cell of 2 m by 2 m, along the normal of the slope
+  c.hold({c.lying.data(), 2000 * 0.99 * depth});
+  EXPECT_NEAR(c.away(0), 2, 1e-14);
+  c.hold({c.lying.data(), 2000 * 1.01 * depth});
+  EXPECT_NEAR(c.away(0), 0, 1e-14);
+}
+
+TEST(HoldColumns, takes_the_rim_of_a_deep_mass_for_deep) {
+  HeldColumn c(5, 2, 2);
+  c.lying.assign(64, 0);
+  for (std::size_t j = 0; j < 8; ++j) {
+    for (std::size_t i = 3; i < 8; ++i) c.lying[j * 8 + i] = i < 5 ? 50 : 800;
+  }
+  const auto view = c.grid.view();
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 3, 3), 800) << "beside empty columns";
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 4, 3), 800);
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 5, 3), 800) << "inside: its own";
+  c.lying.assign(64, 800);
+  c.lying[3 * 8 + 4] = 50;
+  EXPECT_EQ(mass_for_depth(view, c.lying.data(), 4, 3), 50) << "a thin place inside";
+}
+
+TEST(CountLanding, counts_what_bed_and_weight_took_of_the_motion_across_the_bed) {
+  for (const double impulse : {0.0, 160.0, 400.0, 2000.0}) {
+    HeldColumn c(5, -1, -1);
+    c.pressed[HeldColumn::column] = impulse;
+    for_each(CpuDevice::make(), 4 * block_columns,
+             CountLanding<double, PackedNodes<double>>{.grid = c.grid.view(),
+                                                       .active = c.grid.active.data(),
+                                                       .nodes = {c.nodes.data(), nullptr},
+                                                       .pressed = c.pressed.data(),
+                                                       .step = {&c.clock, 0, {{0, 0, -10}}}});
+    const double taken = impulse - 200 * 10 * 0.8 * 0.1;  // beyond the weight of what lies on the bed
+    const double was = 1 + taken / 200;                   // towards the bed, before
+    EXPECT_NEAR(c.clock.budget.landing_loss, 0.5 * 200 * (was * was - 1), 1e-10) << impulse;
+  }
+}
+
 }  // namespace
-}  // namespace talus
+}  // namespace talus::solver::testing

@@ -5,12 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
-
-#include "solver/boundary/column_flow.hpp"
 #include "solver/boundary/contact_impulses.hpp"
-#include "solver/parallel/columns.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {

@@ -3,12 +3,7 @@
 // The list of basal laws: what holds for every one of them, and the numbers that rasters give.
 #include "solver/boundary/law.hpp"
 
-#include <gtest/gtest.h>
-
 #include "common/domain/bed_numbers.hpp"
-#include "solver/boundary/laws/table.hpp"
-#include "solver/boundary/laws/velocity_weakening.hpp"
-#include "solver/boundary/laws/voellmy.hpp"
 #include "solver/options/bed.hpp"
 #include "tests/solver/boundary/any_law.hpp"
 

@@ -1,16 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact between the nodes: obstacles given as level sets.
-#include <algorithm>
-#include <filesystem>
-
-#include "common/domain/level_set.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/options/obstacles.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/options/walls.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -84,8 +74,7 @@ TEST_P(SurfaceContactTest, thin_wall_carries_earth_pressure) {
                {Axis::y, 5, Side::above, WallKind::roller},
                {Axis::y, 11, Side::below, WallKind::roller}};
     o.obstacles = {box_obstacle("thin", {11.5, 11.8, 2, 14, -2, 8}, 0.1)};
-    const Scene scene = make_scene(d, o);
-    const auto solver = make_solver(scene, o, GetParam());
+    const auto solver = make_solver(make_scene(d, o), o, GetParam());
     run_to(*solver, 6);
     const Vec3<double> before = solver->obstacle_impulses().at(0);
     run_to(*solver, 8);

@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Order of the points and storage of the sparse grid together, on a scene.
+// The sparse grid: order of the points and storage, and the terrain on the host and on a device.
 #include "solver/grid/sparse_grid.hpp"
 
-#include <algorithm>
 #include <set>
-#include <utility>
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
+#include "solver/grid/device_terrain.hpp"
+#include "solver/grid/terrain.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -70,6 +67,65 @@ TEST(SparseGrid, stores_every_node_a_point_can_reach_before_the_next_sort) {
     }
   }
   EXPECT_EQ(covered, static_cast<int>(s.size()));
+}
+
+TEST(Terrain, measures_the_slope_of_a_plane_exactly) {
+  for (const bool quadratic : {true, false}) {
+    GridShape shape;
+    shape.columns = 9;
+    shape.rows = 8;
+    shape.spacing = 5;
+    shape.layer_height = 1;
+    shape.quadratic = quadratic;
+    for (int j = 0; j < 8; ++j) {
+      for (int i = 0; i < 9; ++i) shape.terrain.push_back(1000 + 0.3 * 5 * i - 0.7 * 5 * j);
+    }
+    const TerrainTables g = make_terrain_tables(shape);
+    for (std::size_t n = 0; n < g.open.size(); ++n) {
+      if (!g.open[n]) continue;
+      EXPECT_NEAR(g.slope_x[n], 0.3, 1e-12);
+      EXPECT_NEAR(g.slope_y[n], -0.7, 1e-12);
+    }
+    EXPECT_EQ(std::count(g.open.begin(), g.open.end(), 1), 7 * 6);
+    EXPECT_NEAR(g.datum + terrain_at(shape, g, 3.3, 4.6), 1000 + 0.3 * 5 * 3.3 - 0.7 * 5 * 4.6, 1e-10);
+  }
+}
+
+TEST(Terrain, stands_row_by_row) {
+  GridShape shape;
+  shape.columns = 9;
+  shape.rows = 8;
+  EXPECT_EQ(shape.index(0, 0), 0u);
+  EXPECT_EQ(shape.index(5, 3), 3u * 9u + 5u);
+  EXPECT_EQ(shape.index(8, 7), 9u * 8u - 1u);
+}
+
+TEST(Terrain, is_closed_beside_missing_elevations) {
+  GridShape shape;
+  shape.columns = shape.rows = 7;
+  shape.spacing = shape.layer_height = 1;
+  shape.terrain.assign(49, 0.0);
+  shape.terrain[shape.index(5, 3)] = std::nan("");
+  const TerrainTables g = make_terrain_tables(shape);
+  EXPECT_EQ(g.open[shape.index(4, 3)], 0);
+  EXPECT_EQ(g.open[shape.index(5, 3)], 0);
+  EXPECT_EQ(g.open[shape.index(3, 3)], 1);
+  EXPECT_EQ(g.open[shape.index(0, 0)], 0);
+}
+
+TEST(DeviceTerrain, shows_a_grid_every_table_in_the_precision_of_the_kernels) {
+  const TerrainTables tables{
+      .datum = 1000, .terrain = {0.1, 2, 3}, .slope_x = {0.4, 5, 6}, .slope_y = {0.7, 8, 9}, .open = {1, 0, 1}};
+  const DeviceTerrain<float, CpuDevice> terrain(CpuDevice::make(), tables);
+  GridView<float> grid;
+  terrain.show(grid);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(grid.terrain[n], static_cast<float>(tables.terrain[n]));
+    EXPECT_EQ(grid.slope_x[n], static_cast<float>(tables.slope_x[n]));
+    EXPECT_EQ(grid.slope_y[n], static_cast<float>(tables.slope_y[n]));
+    EXPECT_EQ(grid.open[n], tables.open[n]);
+  }
+  EXPECT_EQ(terrain.bytes(), 3 * (3 * sizeof(float) + 1));
 }
 
 }  // namespace

@@ -4,13 +4,9 @@
 // them.
 #include "solver/state/particles.hpp"
 
-#include <gtest/gtest.h>
-
 #include <numeric>
 #include <set>
 
-#include "solver/parallel/device.hpp"
-#include "solver/state/particle_fields.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus {

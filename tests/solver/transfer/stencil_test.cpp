@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A point's weights on the nodes around it: they hold constants and linear functions exactly, and know the slope of
-// the terrain.
+// A point's weights on the nodes around it, gradients by them, and how alone a point is.
 #include "solver/transfer/stencil.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
+#include "solver/transfer/company.hpp"
+#include "solver/transfer/point_gradients.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {
@@ -74,6 +78,106 @@ TYPED_TEST(Stencils, find_the_nodes_where_the_grid_stores_them) {
       }
     }
   }
+}
+
+/// How alone a point is among columns of these masses, by their places in its weights.
+double alone(OnePoint point, const std::function<double(const Stencil<double, Quadratic>&, int, int)>& mass) {
+  const SmallGrid grid;
+  const Stencil<double, Quadratic> s(grid.view(), point.view(), 0);
+  Company<double> company;
+  for (int b = 0; b < 3; ++b) {
+    for (int a = 0; a < 3; ++a) company.add(mass(s, a, b), s.wx[a], s.wy[b]);
+  }
+  return company.alone(s);
+}
+
+TEST(Company, is_none_where_all_mass_is_the_points_own) {
+  for (const OnePoint& point : some_points()) {
+    const bool at_wall = point.cell[0] == 0 || point.cell[1] == 0;
+    if (at_wall) continue;
+    EXPECT_NEAR(alone(point, [](const auto& s, int a, int b) { return 7 * s.wx[a] * s.wy[b]; }), 1, 1e-12);
+  }
+}
+
+TEST(Company, is_full_among_even_columns_and_along_a_ridge) {
+  EXPECT_NEAR(alone({}, [](const auto&, int, int) { return 3.0; }), 0, 1e-12);
+  EXPECT_NEAR(alone({}, [](const auto& s, int, int b) { return s.wy[b]; }), 0, 1e-12);
+  EXPECT_EQ(alone({}, [](const auto&, int, int) { return 0.0; }), 0) << "no mass at all";
+}
+
+TEST(Company, is_some_in_a_patch_as_wide_as_a_cell) {
+  const double patch[] = {1.0 / 6, 2.0 / 3, 1.0 / 6};  // the mean of the weights over the cell
+  OnePoint point;
+  point.offset[0] = point.offset[1] = 0;
+  EXPECT_NEAR(alone(point, [&](const auto&, int a, int b) { return patch[a] * patch[b]; }), 0.8, 1e-12);
+  point.offset[0] = point.offset[1] = 0.25;  // one of four points in it
+  EXPECT_NEAR(alone(point, [&](const auto&, int a, int b) { return patch[a] * patch[b]; }), 0.807, 0.001);
+}
+
+TEST(ShareKeptAlone, is_all_in_company_and_in_short_steps) {
+  EXPECT_EQ(share_kept_alone(0.7, 5.0), 1);
+  EXPECT_EQ(share_kept_alone(1.0, 0.4999 / std::sqrt(2)), 1);
+  EXPECT_LT(share_kept_alone(1.0, 0.51 / std::sqrt(2)), 1);
+}
+
+/// The largest strain of a lone point that starts compressed by 1, over 200 steps: it goes by (omega dt)^2 = `square`,
+/// and keeps a share of its stress in every step.
+double largest_strain(double square, double kept) {
+  double strain = 1, rate = 0, largest = 1;
+  for (int n = 0; n < 200; ++n) {
+    rate -= square * strain;
+    strain = kept * (strain + rate);
+    largest = std::max(largest, std::abs(strain));
+  }
+  return largest;
+}
+
+TEST(ShareKeptAlone, keeps_a_lone_point_from_swinging_up) {
+  for (const double cfl : {0.6, 1.0, 1.4, 1.6}) {
+    const double crossed = cfl / std::sqrt(2), worst = 32 * crossed * crossed;
+    EXPECT_GT(largest_strain(worst, 1), 1e6) << cfl;
+    for (const double share : {0.25, 0.5, 1.0}) {  // of the highest frequency there is
+      const double kept = share_kept_alone(1.0, crossed);
+      EXPECT_LT(largest_strain(share * worst, kept), 2.01 / (1 - kept)) << cfl;  // modes of -1 and -kept
+    }
+  }
+}
+
+constexpr Vec3<double> slope{2, -3, 5};
+
+template <class Shape>
+class PointGradientsOf : public ::testing::Test {};
+using Shapes = ::testing::Types<Linear, Quadratic, Gimp>;
+TYPED_TEST_SUITE(PointGradientsOf, Shapes);
+
+TYPED_TEST(PointGradientsOf, a_linear_field_are_exact) {
+  const SmallGrid grid(0.3, -0.2);
+  const auto field = grid.sample([](const Vec3<double>& at) { return Vec3<double>{1 + dot(slope, at), 0, 0}; });
+  for (OnePoint& point : some_points()) {
+    const PointGradients<double, TypeParam> g(grid.view(), point.view(), 0);
+    double value = 0;
+    Vec3<double> gradient{};
+    int nodes = 0;
+    around(grid.view(), g, [&](int n, int a, int b, int c) {
+      value += g.weight(a, b, c) * field[static_cast<std::size_t>(n)].x;
+      gradient += g.gradient(a, b, c) * field[static_cast<std::size_t>(n)].x;
+      ++nodes;
+    });
+    EXPECT_EQ(nodes, TypeParam::width * TypeParam::width * TypeParam::width);
+    constexpr double bound = 1e-12;  // of 27 terms, each up to 50, over half a metre
+    EXPECT_NEAR(value, 1 + dot(slope, point.place(grid)), bound);
+    EXPECT_NEAR(gradient.x, slope.x, bound);
+    EXPECT_NEAR(gradient.y, slope.y, bound);
+    EXPECT_NEAR(gradient.z, slope.z, bound);
+  }
+}
+
+TEST(PointScatters, number_the_columns_of_a_stencil_along_x_first) {
+  using Scatter = PointScatter<double, Quadratic>;
+  EXPECT_EQ(Scatter::along_x(5), 2);
+  EXPECT_EQ(Scatter::along_y(5), 1);
+  EXPECT_TRUE(Scatter::owns(-1, 1));
+  EXPECT_FALSE(Scatter::owns(-1, 0)) << "there is no node below the ground";
 }
 
 }  // namespace

@@ -1,15 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // P2G and G2P against a plain reference: dense sums in double, written from the definitions.
-#include <algorithm>
-#include <map>
 #include <numeric>
 #include <random>
-#include <tuple>
 
 #include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
 #include "solver/transfer/particle_to_grid.hpp"
 #include "tests/solver/scenes.hpp"
