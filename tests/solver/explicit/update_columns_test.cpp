@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/parallel/columns.hpp"
-#include "solver/state/clock.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How densely points are packed: 1 where they lie as they were released, twice that where two lie in the room of one.
+// Sums and maps of the points: energies, thickness, packing; speed and pressure that no column exceeds.
 #include "solver/integrator/packing.hpp"
-
-#include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "solver/options/solve.hpp"
+#include "solver/integrator/motion_maps.hpp"
+#include "solver/integrator/point_sums.hpp"
 #include "tests/solver/scenes.hpp"
 #include "tests/solver/small_grid.hpp"
 
@@ -94,6 +93,138 @@ TEST(Packing, percentile_leaves_a_hundredth_of_the_volume_above) {
   bins[250] = 102;
   EXPECT_DOUBLE_EQ(packing_of(bins, 2.505).p99, 2.505) << "the upper end of its bin, no more than the largest";
   EXPECT_EQ(packing_of(std::vector<CellParts>(packing_bins), 0).p99, 0);
+}
+
+template <class Shape>
+class PointSums : public ::testing::Test {};
+using Shapes = ::testing::Types<Linear, Quadratic, Gimp>;
+TYPED_TEST_SUITE(PointSums, Shapes);
+
+TYPED_TEST(PointSums, have_the_energies_and_momentum_of_the_point) {
+  const SmallGrid grid(0.3, -0.2);
+  Materials<double> materials;
+  MaterialOptions options;
+  options.density = 1500;
+  materials.list[0] = make_material<double>(options);
+  for (OnePoint& point : some_points()) {
+    point.velocity[0] = 3;
+    point.velocity[2] = -4;
+    const MeasureEnergies<double, TypeParam> measure{grid.view(), point.view(), materials, {1, 2, -10}, false};
+    const auto sums = measure(0);
+    const double mass = 0.25 * 1500;
+    const Vec3<double> at = point.place(grid);
+    const double expected[] = {0.5 * mass * 25, -mass * (at.x + 2 * at.y - 10 * at.z), 0, 0.25, mass * 3, 0, mass * -4};
+    for (int row = 0; row < 7; ++row)  // rounding of a dozen operations on numbers up to 1e5
+      EXPECT_NEAR(sums.value[row], expected[row], 1e-10 * mass) << "sum " << row;
+  }
+}
+
+TYPED_TEST(PointSums, spread_all_of_a_volume_about_the_point) {
+  for (OnePoint& point : some_points()) {
+    std::vector<double> volume(64);
+    ScatterThickness<double, TypeParam>{point.view(), SmallGrid::side, volume.data()}(0);
+    const double sum = std::accumulate(volume.begin(), volume.end(), 0.0);
+    EXPECT_NEAR(sum, point.volume, 1e-15);
+    double x = 0;
+    for (std::size_t n = 0; n < volume.size(); ++n) x += volume[n] / sum * static_cast<double>(n % SmallGrid::side);
+    EXPECT_NEAR(x, point.cell[0] + point.offset[0], 1e-14) << "its centre is that of the point";
+    point.cell[0] = -1;
+    const std::vector<double> before = volume;
+    ScatterThickness<double, TypeParam>{point.view(), SmallGrid::side, volume.data()}(0);
+    EXPECT_EQ(volume, before) << "a point that has left has no thickness";
+  }
+}
+
+/// The maps of a small grid, from points that go their ways.
+struct MovingPoints {
+  SmallGrid grid;
+  Clock clock;
+  Materials<double> materials;
+  std::vector<Vec4<double>> motion = std::vector<Vec4<double>>(64);
+  std::vector<double> thickness = std::vector<double>(64), speed = thickness, pressure = thickness,
+                      arrival = std::vector<double>(64, -1);
+
+  MovingPoints() {
+    MaterialOptions options;
+    options.density = 2000;
+    materials.list[0] = make_material<double>(options);
+    clock.motion_maps.is_due = 1;
+  }
+  MapView maps(double threshold) {
+    return {{thickness.data(), speed.data(), pressure.data(), arrival.data()}, threshold};
+  }
+  template <class Shape>
+  void record(std::vector<OnePoint>& points, double threshold = 0) {
+    for (OnePoint& p : points) ScatterMotion<double, Shape>{grid.view(), p.view(), materials, &clock, motion.data()}(0);
+    const RecordMotion<double> kernel{grid.view(), grid.active.data(), {2000, nullptr}, motion.data(), maps(threshold)};
+    for (int c = 0; c < 4 * block_columns; ++c) kernel(c);
+  }
+};
+
+std::vector<OnePoint> two_points() {
+  std::vector<OnePoint> points(2);
+  points[0].velocity[0] = 30;
+  points[1].velocity[1] = -40;
+  points[1].volume = 0.75;
+  return points;
+}
+
+template <class Shape>
+class MotionOfPoints : public ::testing::Test {};
+using MotionShapes = ::testing::Types<Linear, Quadratic, Gimp>;
+TYPED_TEST_SUITE(MotionOfPoints, MotionShapes);
+
+TYPED_TEST(MotionOfPoints, is_the_mean_over_mass_of_those_about_the_column) {
+  MovingPoints moving;
+  auto points = two_points();
+  moving.record<TypeParam>(points);
+  const double mean = std::hypot(30 * 0.25, 40 * 0.75);
+  EXPECT_NEAR(moving.speed[4 * SmallGrid::side + 3], mean, 1e-13 * mean);
+  EXPECT_NEAR(moving.pressure[4 * SmallGrid::side + 3], 2000 * mean * mean, 1e-9 * mean);
+  EXPECT_EQ(moving.speed[0], 0);
+}
+
+TYPED_TEST(MotionOfPoints, never_exceeds_that_of_the_fastest_in_columns_of_any_mass) {
+  MovingPoints moving;
+  for (int n = 0; n <= 20; ++n) {
+    auto points = two_points();
+    points[0].offset[0] = -0.5 + 0.05 * n;  // its share of the columns beside it goes down to nothing
+    points[1].offset[1] = 0.4999 - 0.05 * n;
+    moving.record<TypeParam>(points);
+  }
+  // A mean of two numbers is exact to a few roundings.
+  for (const double v : moving.speed) EXPECT_LE(v, 40 * (1 + 1e-14));
+  for (const double p : moving.pressure) EXPECT_LE(p, 2000 * 40 * 40 * (1 + 1e-14));
+}
+
+TEST(MotionMaps, leave_no_sums_behind) {
+  MovingPoints moving;
+  auto points = two_points();
+  moving.record<Quadratic>(points);
+  for (const Vec4<double>& sum : moving.motion) EXPECT_EQ(sum.w + sum.x + sum.y + sum.z, 0);
+}
+
+TEST(MotionMaps, record_when_the_clock_says_so) {
+  MovingPoints moving;
+  moving.clock.motion_maps.is_due = 0;
+  auto points = two_points();
+  moving.record<Quadratic>(points);
+  EXPECT_EQ(*std::max_element(moving.speed.begin(), moving.speed.end()), 0);
+}
+
+TEST(MotionMaps, count_from_the_threshold_on) {
+  MovingPoints moving;
+  auto points = two_points();
+  moving.record<Quadratic>(points, 1);  // of 1 m3 on cells of 4 m2
+  EXPECT_EQ(*std::max_element(moving.speed.begin(), moving.speed.end()), 0);
+}
+
+TEST(MotionMaps, forget_points_that_have_left) {
+  MovingPoints moving;
+  auto points = two_points();
+  points[1].cell[0] = -1;
+  moving.record<Quadratic>(points);
+  EXPECT_DOUBLE_EQ(*std::max_element(moving.speed.begin(), moving.speed.end()), 30);
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 // refuses.
 #include "solver/linear/direct/cholesky_solver.hpp"
 
-#include "common/error.hpp"
-#include "solver/integrator/scene.hpp"
 #include "solver/linear/direct/cholesky.hpp"
 #include "solver/linear/direct/csr_assembly.hpp"
 #include "solver/linear/direct/csr_matrix.hpp"

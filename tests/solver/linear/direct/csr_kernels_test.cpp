@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernels that number unknowns and place blocks in a sparse matrix, on numbers small enough to check by hand.
+// Numbering, sparse matrices and orders of elimination on numbers small enough to check by hand; cuSOLVER's loading.
 #include "solver/linear/direct/csr_kernels.hpp"
 
 #include <gtest/gtest.h>
 
-namespace talus::solver {
+#include "solver/linear/direct/cusolver.hpp"
+#include "solver/linear/direct/elimination_order.hpp"
+#include "solver/linear/direct/renumbered_matrix.hpp"
+
+namespace talus::solver::testing {
 namespace {
 
 constexpr Sym3<double> freely{1, 1, 1, 0, 0, 0}, held{};
@@ -69,5 +73,98 @@ TEST(CsrKernels, place_the_rows_of_a_block_one_after_the_other) {
             (std::vector<int>{0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4, 5, 3, 4, 5, 3, 4, 5, 3, 4, 5}));
 }
 
+/// The matrix of a chain of nodes 0 - 1 - 2, three rows each.
+CsrMatrix<CpuDevice> chain(double scale) {
+  CsrMatrix<CpuDevice> a(CpuDevice::make());
+  std::vector<int> starts{0}, columns;
+  std::vector<double> values;
+  for (int row = 0; row < 9; ++row) {
+    for (int column = 0; column < 9; ++column) {
+      if (std::abs(row / 3 - column / 3) > 1) continue;
+      columns.push_back(column);
+      values.push_back(scale * (100.0 * std::min(row, column) + std::max(row, column)));
+    }
+    starts.push_back(static_cast<int>(columns.size()));
+  }
+  a.rows = 9;
+  a.starts.upload(starts);
+  a.columns.upload(columns);
+  a.values.upload(values);
+  return a;
+}
+
+std::vector<double> product(const int* starts, const int* columns, const double* values, const double* x) {
+  std::vector<double> y(9);
+  for (std::size_t row = 0; row < 9; ++row) {
+    for (int k = starts[row]; k < starts[row + 1]; ++k) y[row] += values[k] * x[columns[k]];
+  }
+  return y;
+}
+
+TEST(RenumberedMatrix, is_the_same_operator_between_vectors_brought_there_and_back) {
+  const CpuDevice device = CpuDevice::make();
+  RenumberedMatrix<CpuDevice> matrix(device);
+  const CsrMatrix<CpuDevice> first = chain(1);
+  matrix.take({first.starts.download(), first.columns.download()}, {2, 0, 1});
+  for (const double scale : {1.0, -2.0}) {  // values change, the pattern stays
+    const CsrMatrix<CpuDevice> a = chain(scale);
+    matrix.fill(a);
+    Buffer<double, CpuDevice> x(device), ordered(device, 9), y(device), back(device, 9);
+    x.upload({1, -2, 3, -4, 5, -6, 7, -8, 9});
+    matrix.to_order(x, ordered, 9);
+    EXPECT_EQ(ordered.download(), (std::vector<double>{7, -8, 9, 1, -2, 3, -4, 5, -6}));
+    y.upload(product(matrix.starts(), matrix.columns(), matrix.values(), ordered.data()));
+    matrix.from_order(y, back, 9);
+    EXPECT_EQ(back.download(), product(a.starts.data(), a.columns.data(), a.values.data(), x.data()));
+  }
+}
+
+TEST(EliminationOrder, renumbers_rows_and_columns_alike) {
+  // Nodes 0 - 1 - 2 in a chain, three rows each.
+  const std::vector<std::vector<int>> neighbours{{0, 1}, {0, 1, 2}, {1, 2}};
+  HostPattern a;
+  a.starts.push_back(0);
+  std::vector<double> values;
+  const auto value = [](int row, int column) { return 100.0 * std::min(row, column) + std::max(row, column); };
+  for (int row = 0; row < 9; ++row) {
+    for (const int n : neighbours[static_cast<std::size_t>(row / 3)]) {
+      for (int j = 0; j < 3; ++j) {
+        a.columns.push_back(3 * n + j);
+        values.push_back(value(row, 3 * n + j));
+      }
+    }
+    a.starts.push_back(static_cast<int>(a.columns.size()));
+  }
+  const HostPattern graph = graph_of_nodes(a);
+  EXPECT_EQ(graph.starts, (std::vector<int>{0, 2, 5, 7}));
+  EXPECT_EQ(graph.columns, (std::vector<int>{0, 1, 0, 1, 2, 1, 2}));
+  const Renumbered r = renumber(a, {2, 0, 1});
+  EXPECT_EQ(r.order, (std::vector<int>{6, 7, 8, 0, 1, 2, 3, 4, 5}));
+  ASSERT_EQ(r.source.size(), values.size());
+  for (std::size_t row = 0; row < 9; ++row) {
+    for (auto k = static_cast<std::size_t>(r.pattern.starts[row]);
+         k < static_cast<std::size_t>(r.pattern.starts[row + 1]); ++k) {
+      const auto column = static_cast<std::size_t>(r.pattern.columns[k]);
+      EXPECT_EQ(values[static_cast<std::size_t>(r.source[k])], value(r.order[row], r.order[column]));
+      if (k > static_cast<std::size_t>(r.pattern.starts[row])) {
+        EXPECT_LT(r.pattern.columns[k - 1], r.pattern.columns[k]);
+      }
+    }
+  }
+}
+
+TEST(Cusolver, is_loaded_as_a_whole_or_says_what_to_install) {
+  try {
+    const Cusolver& library = cusolver();
+    EXPECT_NE(library.create, nullptr);
+    EXPECT_NE(library.order_by_dissection, nullptr);
+    EXPECT_NE(library.factorise, nullptr);
+    EXPECT_NE(library.solve, nullptr);
+    EXPECT_EQ(&cusolver(), &library) << "loaded once";
+  } catch (const NumericalError& error) {
+    EXPECT_NE(std::string(error.what()).find("Install NVIDIA's libcusolver"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
-}  // namespace talus::solver
+}  // namespace talus::solver::testing
