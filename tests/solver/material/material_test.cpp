@@ -6,12 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <numbers>
 #include <random>
 
 #include "solver/material/laws/drucker_prager.hpp"
 #include "solver/material/state.hpp"
-#include "solver/material/strain.hpp"
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
@@ -300,7 +298,6 @@ TEST(Materials, that_hold_tension_are_the_elastic_ones_and_sand_with_a_tension_c
   EXPECT_TRUE(holds(MaterialModel::drucker_prager));
 }
 
-/// A lone point opens by the same rate for ever: its gradient is that of its own affine velocity.
 TEST(Materials, go_to_the_first_compiled_set_that_holds_their_laws) {
   Materials<double> all;
   const auto laws = [&] {
@@ -330,6 +327,7 @@ TEST(Materials, keep_laws_and_numbers_in_a_set_of_some_laws) {
   EXPECT_EQ(some.list[0].numbers_of<DruckerPrager>().tension, 7);
 }
 
+/// A lone point opens by the same rate for ever: its gradient is that of its own affine velocity.
 TEST(DruckerPrager, lone_grain_that_opens_for_ever_keeps_a_state) {
   const auto material = sand();
   MaterialState<double> state;

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Work that repeats, recorded on a GPU and done as it is given on the CPU.
+// Work that repeats, recorded on a GPU and done as it is given on the CPU; memory of the host.
 #include "solver/parallel/recording.hpp"
 
-#include "solver/parallel/for_each.hpp"
+#include "solver/parallel/host_room.hpp"
 #include "solver/parallel/launch.hpp"
-#include "tests/solver/scenes.hpp"
+#include "tests/solver/on_each_device.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -46,6 +46,42 @@ TEST_P(Recordings, do_their_body_as_often_as_asked) {
   repeat<CpuDevice>();
 }
 TALUS_IN_EACH_PLACE(Recordings);
+
+struct Numbers {
+  double first;
+  int rest[3];
+  std::uint32_t last;
+};
+
+class HostRooms : public OnEachDevice {};
+
+TEST_P(HostRooms, bring_an_object_to_the_device_and_back) {
+  on_device([](const auto& device) {
+    using Device = std::decay_t<decltype(device)>;
+    HostRoom<Numbers, Device> in(device), out(device);
+    EXPECT_EQ((*in).first, 0) << "it is empty to begin with";
+    Buffer<Numbers, Device> there(device, 1);
+    *in = {2.5, {1, 2, 3}, 7};
+    in.copy_to(there.data());
+    out.copy_from(there.data());
+    synchronise(device);
+    EXPECT_EQ((*out).first, 2.5);
+    EXPECT_EQ((*out).rest[2], 3);
+    EXPECT_EQ((*out).last, 7u);
+  });
+}
+
+TEST_P(HostRooms, are_lent_again_once_they_were_given_back) {
+  on_device([](const auto& device) {
+    using Device = std::decay_t<decltype(device)>;
+    for (int turn = 0; turn < 3; ++turn) {
+      HostRoom<Numbers, Device> room(device);
+      EXPECT_EQ((*room).last, 0u) << "nothing of an earlier owner is left";
+      *room = {1, {}, 9};
+    }
+  });
+}
+TALUS_IN_EACH_PLACE(HostRooms);
 
 }  // namespace
 }  // namespace talus::solver::testing

@@ -3,8 +3,6 @@
 // mu(I) rheology with dilatancy: points in plane shear under a constant normal stress against the logistic closed form.
 #include "solver/material/laws/dilatancy.hpp"
 
-#include <gtest/gtest.h>
-
 #include "tests/solver/material/any_law.hpp"
 
 namespace talus::testing {

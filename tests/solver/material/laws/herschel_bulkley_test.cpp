@@ -3,9 +3,8 @@
 // Herschel-Bulkley mud: its stress at a given rate of shear against the closed form, whatever the step.
 #include "solver/material/laws/herschel_bulkley.hpp"
 
-#include <gtest/gtest.h>
-
 #include "solver/material/laws/flowing.hpp"
+#include "solver/material/laws/mu_of_i.hpp"
 #include "tests/solver/material/any_law.hpp"
 
 namespace talus::testing {
@@ -88,6 +87,128 @@ TEST(HerschelBulkley, is_sound_in_single_precision) {
       }
     }
   }
+}
+
+constexpr double pressed = 1e4;  // [Pa]
+
+Material<double> granular(const MuOfI::Options& o = {}) {
+  auto m = some_material<MuOfI, MaterialLaws>();
+  m.numbers_of<MuOfI>() = MuOfI::numbers<double>(o, 1.0);
+  return m;
+}
+
+double inertial_number(const MuOfI::Options& o, double rate) {
+  return rate * o.grain_diameter / std::sqrt(pressed / o.grain_density);
+}
+/// mu_s, mu_2, I_0 and mu_inf as Barker & Gray (2017) have them.
+double closed_form(const MuOfI::Options& o, double i) {
+  const double slow = std::tan(o.static_friction_angle * M_PI / 180),
+               fast = std::tan(o.limiting_friction_angle * M_PI / 180);
+  return (slow * o.inertial_number + fast * i + o.fast_friction_rise * i * i) / (o.inertial_number + i);
+}
+
+/// The stress in steady plane shear at a rate [1/s], in steps of this strain.
+Sym3<double> sheared(const Material<double>& m, double rate, double strain) {
+  MaterialState<double> s;
+  s.log_volume = -pressed / m.bulk_modulus;
+  Mat3<double> g{};
+  g.c.x = strain;  // dv_x/dz, at constant volume
+  for (int n = 0; n < 500; ++n) advance_material(m, g, strain / rate, s);
+  return kirchhoff_stress(m, s);
+}
+
+/// sqrt(J2) at the end of a step that strains by `strain` in `seconds`, from a trial at rest of the static friction.
+double returned(const Material<double>& m, double rate, double seconds, double size) {
+  // The trial whose end has this rate: sqrt(J2) + G rate dt.
+  return MuOfI::flow<double>(m, m.numbers_of<MuOfI>(), size + m.shear_modulus * rate * seconds, pressed, seconds).left;
+}
+
+TEST(MuOfI, has_the_analytic_friction_in_steady_simple_shear) {
+  const MuOfI::Options o;
+  const auto m = granular();
+  for (const double rate : {0.1, 10.0, 1000.0, 1e4}) {
+    for (const double strain : {1e-4, 3e-4}) {
+      const Sym3<double> tau = sheared(m, rate, strain);
+      // The elastic strain, 1e-3, turns with the flow.
+      EXPECT_NEAR(tau.xz / pressed / closed_form(o, inertial_number(o, rate)), 1, 2e-3) << rate << ", " << strain;
+      EXPECT_NEAR(-trace(tau) / 3, pressed, 1e-9 * pressed);
+    }
+  }
+  EXPECT_GT(closed_form(o, inertial_number(o, 1e4)), 1.5 * closed_form(o, inertial_number(o, 0.1)));
+}
+
+TEST(MuOfI, returns_to_the_closed_form_at_any_rate_and_any_step) {
+  const MuOfI::Options o;
+  const auto m = granular();
+  for (const double rate : {1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4}) {
+    const double expected = pressed * closed_form(o, inertial_number(o, rate));
+    for (const double seconds : {1e-7, 1e-4, 0.1, 100.0})
+      EXPECT_NEAR(returned(m, rate, seconds, expected) / expected, 1, 1e-9) << rate << ", " << seconds;
+  }
+}
+
+TEST(MuOfI, rests_below_the_static_angle_and_never_pulls_grains_apart) {
+  const auto m = granular();
+  const double slow = pressed * std::tan(20.9 * M_PI / 180);
+  const auto& n = m.numbers_of<MuOfI>();
+  EXPECT_EQ(MuOfI::flow<double>(m, n, 0.999 * slow, pressed, 1.0).left, 0.999 * slow);
+  EXPECT_LT(MuOfI::flow<double>(m, n, 1.001 * slow, pressed, 1.0).left, 1.001 * slow);
+  EXPECT_EQ(MuOfI::flow<double>(m, n, 10.0, 0.0, 1.0).left, 0) << "opened grains carry nothing";
+  // Beyond this cone the least principal stress of an extension is tensile.
+  EXPECT_NEAR(MuOfI::flow<double>(m, n, 1e9, pressed, 1e-6).left, steepest_cone * pressed, 1e-9 * pressed);
+}
+
+TEST(MuOfI, creeps_by_barker_and_gray_below_the_well_posed_range) {
+  MuOfI::Options o;
+  o.slow_flow = SlowFlow::creep;
+  const auto m = granular(o);
+  const double first = o.first_well_posed();
+  const double joined = closed_form(o, first);
+  for (const double share : {1e-6, 1e-3, 0.1, 0.5, 0.999, 1.001, 2.0, 100.0}) {
+    const double i = share * first, rate = i / o.grain_diameter * std::sqrt(pressed / o.grain_density);
+    // A = I_1 exp(alpha / mu(I_1)^2): continuous at I_1.
+    const double scale = std::log(first / i) + 1.9 / (joined * joined);
+    const double expected = pressed * (share < 1 ? std::sqrt(1.9 / scale) : closed_form(o, i));
+    for (const double seconds : {1e-6, 1e-3, 1.0, 1000.0})
+      EXPECT_NEAR(returned(m, rate, seconds, expected) / expected, 1, 1e-9) << share << ", " << seconds;
+  }
+  // Where C of Barker et al. (2015) is zero: mu_s = 0.342, mu_2 = 0.557, I_0 = 0.069 without the rise, by hand 0.0040.
+  MuOfI::Options hand;
+  hand.static_friction_angle = std::atan(0.342) * 180 / M_PI;
+  hand.limiting_friction_angle = std::atan(0.557) * 180 / M_PI;
+  hand.inertial_number = 0.069;
+  hand.fast_friction_rise = 0;
+  EXPECT_NEAR(hand.first_well_posed(), 0.0040, 1e-4);
+  o.limiting_friction_angle = o.static_friction_angle + 0.5;
+  EXPECT_EQ(o.first_well_posed(), 0) << "a rise of half a degree is well posed nowhere";
+}
+
+/// C of Barker et al. (2015) by differences of the friction that the return itself gives.
+TEST(MuOfI, is_well_posed_on_the_branch_of_creep_and_not_without_it) {
+  const auto condition = [](const MuOfI::Options& o, double i) {
+    const auto m = granular(o);
+    const auto friction = [&](double number) {
+      const double rate = number / o.grain_diameter * std::sqrt(pressed / o.grain_density), seconds = 1e3;
+      double mu = closed_form(o, number);
+      for (int n = 0; n < 60; ++n) mu = returned(m, rate, seconds, mu * pressed) / pressed;  // its own trial
+      return mu;
+    };
+    const double step = 1e-3, mu = friction(i);
+    const double x = (friction(i * (1 + step)) - friction(i * (1 - step))) / (2 * step) / mu;
+    return 4 * x * x - 4 * x + mu * mu * (1 - x / 2) * (1 - x / 2);
+  };
+  MuOfI::Options o;
+  EXPECT_GT(condition(o, 1e-4), 0);
+  o.slow_flow = SlowFlow::creep;
+  EXPECT_LT(condition(o, 1e-4), 0);
+  EXPECT_LT(condition(o, 1e-3), 0);
+  EXPECT_LT(condition(o, 0.1), 0);
+}
+
+TEST(MuOfI, has_the_exact_tangent_of_its_creep_too) {
+  MuOfI::Options o;
+  o.slow_flow = SlowFlow::creep;
+  expect_tangent_to_be_the_derivative(granular(o));
 }
 
 }  // namespace
