@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The members of an error budget: each is the run that it would be by hand, and a block on an incline moves as Newton's
 // law says that the doubt of its friction moves it.
-#include <cmath>
-#include <numbers>
 #include <sstream>
 
 #include "solver/ensemble/member_run.hpp"
@@ -217,12 +215,9 @@ TEST(BudgetOwnRuns, are_settled_as_the_run_itself_is) {
 TEST(BudgetOwnRuns, that_set_what_cannot_be_are_refused_by_name) {
   for (const char* set :
        {"\"solve.base.colour=5\"", "\"preprocess.grid.spacing_m=5\"", "\"solve.base.friction_angle_deg=95\""}) {
-    try {
-      const BudgetScene scene(with_own_run(set), small_heap());
-      FAIL() << set;
-    } catch (const RecipeError& error) {
-      EXPECT_EQ(std::string(error.what()).find("[[ensemble.budget.run]] \"voellmy\""), 0u) << error.what();
-    }
+    const std::string fault =
+        test::fault_of<RecipeError>([&] { const BudgetScene scene(with_own_run(set), small_heap()); });
+    EXPECT_TRUE(fault.starts_with("[[ensemble.budget.run]] \"voellmy\"")) << set << ": " << fault;
   }
 }
 

@@ -1,9 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ensembles whose distributions have closed forms: blocks on an incline with an unknown friction.
-#include <algorithm>
-#include <numbers>
-
 #include "solver/ensemble/run_members.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 

@@ -3,13 +3,6 @@
 // A small ensemble for the tests: a heap that slides down a plane, with members that differ in keys of every kind.
 #pragma once
 
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "common/ensemble/counts.hpp"
-#include "common/ensemble/member_table.hpp"
 #include "solver/ensemble/members.hpp"
 #include "solver/run/run_inputs.hpp"
 #include "tests/common/scratch.hpp"

@@ -3,7 +3,6 @@
 // From members.h5 to counts.h5: parts, what is taken up again, what is refused.
 #include "solver/ensemble/ensemble_stage.hpp"
 
-#include "common/run/run_file.hpp"
 #include "common/stage/console.hpp"
 #include "solver/ensemble/keep_runs.hpp"
 #include "solver/run/run_loop.hpp"

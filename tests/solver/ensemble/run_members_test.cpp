@@ -3,7 +3,6 @@
 // Members of an ensemble are the runs that they would be alone, whoever runs them beside them.
 #include "solver/ensemble/run_members.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 #include "common/domain/scale_release.hpp"

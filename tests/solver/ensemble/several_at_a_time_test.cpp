@@ -1,13 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What runs may ask for, with several at a time: the results are those of one at a time.
-#include <algorithm>
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "common/domain/level_set.hpp"
 #include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/run_members.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"

@@ -3,11 +3,6 @@
 // What the keys of [[solve.inflow]] need of one another and of the rest.
 #include "solver/options/inflow.hpp"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "common/error.hpp"
 #include "solver/options/solve.hpp"
 #include "tests/common/scratch.hpp"
 

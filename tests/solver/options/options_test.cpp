@@ -3,13 +3,6 @@
 // What keys of [solve] need of one another, and the texts of the refusals.
 #include "solver/options/solve.hpp"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <string>
-#include <vector>
-
-#include "solver/options/implicit.hpp"
 #include "solver/options/names.hpp"
 #include "solver/options/time.hpp"
 #include "tests/common/scratch.hpp"

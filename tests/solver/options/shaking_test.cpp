@@ -1,13 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the keys of [solve.shaking] need of one another and of the rest.
+// Options of shaking, and what keeps integrators from a scene.
 #include "solver/options/shaking.hpp"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "common/error.hpp"
+#include "solver/options/hindrances.hpp"
 #include "solver/options/solve.hpp"
 #include "tests/common/scratch.hpp"
 
@@ -47,6 +43,36 @@ TEST(ShakingOptions, refuse_what_would_not_shake) {
   EXPECT_EQ(shaking_faults("end_time_s = 10.0", "file = \"record.csv\"\nstart_s = 10.0"),
             "[solve.shaking] start_s = 10 with end_time_s = 10 (the run ends before the ground shakes). Give a smaller "
             "start_s, or a larger end_time_s");
+}
+
+TEST(Hindrances, none_stand_in_the_way_of_a_plain_recipe) {
+  const SolveOptions o;
+  EXPECT_FALSE(beyond_columns(o));
+  EXPECT_FALSE(beyond_rest(o));
+}
+
+TEST(Hindrances, of_columns_are_walls_above) {
+  SolveOptions contact;
+  contact.obstacles.emplace_back();
+  EXPECT_FALSE(beyond_columns(contact));
+  SolveOptions floor;
+  floor.walls.push_back({.axis = Axis::z, .material_is = Side::above});
+  EXPECT_FALSE(beyond_columns(floor));
+  SolveOptions lid;
+  lid.walls.push_back({.axis = Axis::z, .material_is = Side::below});
+  EXPECT_EQ(beyond_columns(lid).key, "a [[solve.wall]] across z above the material");
+}
+
+TEST(Hindrances, of_rest_are_named_by_their_key) {
+  const auto key = [](auto change) {
+    SolveOptions o;
+    change(o);
+    return beyond_rest(o).key;
+  };
+  EXPECT_EQ(key([](SolveOptions& o) { o.material.model = MaterialModel::mu_of_i; }), "model = \"mu-of-i\"");
+  EXPECT_EQ(key([](SolveOptions& o) { o.base.separation = Separation::thin; }), "[solve.base] separation = \"thin\"");
+  EXPECT_EQ(key([](SolveOptions& o) { o.deterministic = true; }), "[solve] deterministic = true");
+  EXPECT_EQ(key([](SolveOptions& o) { o.energy_budget = true; }), "[solve] energy_budget = true");
 }
 
 }  // namespace

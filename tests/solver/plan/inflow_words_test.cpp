@@ -3,7 +3,6 @@
 // What is said of inflows before a run.
 #include "solver/plan/inflow_words.hpp"
 
-#include "solver/plan/energy_line.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/solver/plans.hpp"
 #include "tests/solver/scenes.hpp"

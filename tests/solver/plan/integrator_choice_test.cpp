@@ -3,10 +3,6 @@
 // integrator = "auto": the choice by work, and what a change of integrator must leave alone.
 #include "solver/plan/integrator_choice.hpp"
 
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/scene/make_scene.hpp"
-#include "solver/scene/make_solver.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

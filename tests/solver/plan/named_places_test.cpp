@@ -3,9 +3,6 @@
 // Sections, gauges and inflows at the lines and points of a domain.
 #include "solver/plan/named_places.hpp"
 
-#include <gtest/gtest.h>
-
-#include "common/error.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::solver {

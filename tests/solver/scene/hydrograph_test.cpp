@@ -3,11 +3,6 @@
 // Hydrographs: their integral, and files that are none.
 #include "solver/scene/hydrograph.hpp"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "common/error.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::solver::testing {

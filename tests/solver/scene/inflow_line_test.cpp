@@ -3,11 +3,6 @@
 // The line of an inflow on a tilted plane: its strips, its slope and the way of its flow.
 #include "solver/scene/inflow_line.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "solver/scene/make_scene.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

@@ -3,12 +3,8 @@
 // The points of inflows: their volume is the hydrograph's, their momentum what was stated; what cannot be is refused.
 #include "solver/scene/make_inflow.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numeric>
 
-#include "common/error.hpp"
 #include "solver/scene/hydrograph.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/solver/scenes.hpp"
