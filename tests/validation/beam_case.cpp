@@ -3,11 +3,6 @@
 // A2: a cantilever bent far by a load at its tip.
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-#include <limits>
-#include <map>
-
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/closed_forms.hpp"

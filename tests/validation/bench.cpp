@@ -9,12 +9,8 @@
 
 #include <cctype>
 #include <cerrno>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <limits>
-#include <stdexcept>
 
 #include "common/stage/stage.hpp"
 

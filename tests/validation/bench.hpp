@@ -3,11 +3,7 @@
 // Runs variants of a case's recipe through the programs and keeps the rows of the table.
 #pragma once
 
-#include <filesystem>
 #include <functional>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"

@@ -3,12 +3,6 @@
 // B1 and B2: blocks on an incline.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include "tests/validation/cases.hpp"
 #include "tests/validation/closed_forms.hpp"
 

@@ -3,10 +3,7 @@
 // The cases of the validation. Each runs its recipe's variants, adds rows to the table and draws its pictures.
 #pragma once
 
-#include <limits>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "tests/validation/bench.hpp"
 

@@ -3,12 +3,11 @@
 // The closed forms against values from elsewhere, so that the table leans on something.
 #include "tests/validation/closed_forms.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "tests/common/scratch.hpp"
 #include "tests/validation/recipe_text.hpp"
+#include "tests/validation/slices.hpp"
 
 namespace talus::validation {
 namespace {
@@ -151,6 +150,53 @@ TEST(recipe_text, overrides_keys_and_adds_tables) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
   }
   EXPECT_THROW(recipe_with(base, {{"b[5].name", words("far")}}), std::runtime_error);
+}
+
+TEST(sand_laws, give_the_column_of_the_reference_paper) {
+  EXPECT_NEAR(0.09 * (1 + lube_run_out(7)), 0.8145, 1e-4);
+  EXPECT_NEAR(0.09 * lube_height(7), 0.196, 1e-4);
+  EXPECT_NEAR(0.09 * (1 + lajeunesse_run_out(7)), 0.716, 1e-3);
+}
+
+TEST(sand_laws, have_a_band_where_one_of_them_is_silent) {
+  EXPECT_TRUE(std::isnan(lube_run_out(2)));
+  const Band band = band_of(lube_run_out(2), lajeunesse_run_out(2));
+  EXPECT_DOUBLE_EQ(band.low, 0.9 * 2.4);
+  EXPECT_DOUBLE_EQ(band.high, 1.1 * 2.4);
+}
+
+TEST(sand_laws, band_holds_both_laws) {
+  for (const double a : {0.5, 1.0, 1.5, 3.0, 5.0, 9.0}) {
+    const Band band = band_of(lube_run_out(a), lajeunesse_run_out(a));
+    EXPECT_LT(band.low, lajeunesse_run_out(a));
+    EXPECT_GT(band.high, lube_run_out(a));
+  }
+}
+
+TEST(slices, have_the_factor_of_bishop_and_morgensterns_chart) {
+  // 1960: 2:1, phi = 20 deg, c = 0.05, firm base at the toe; 1.380 by their charts (in Griffiths & Lane 1999).
+  EXPECT_NEAR(bishop_factor({.cohesion = 0.05, .friction = 20}), 1.380, 0.004);
+}
+
+TEST(slices, have_taylors_factor_of_clay) {
+  // 1937: 2:1, phi = 0, c = 0.25, firm base one height below the toe; 1.47 (in Griffiths & Lane 1999).
+  EXPECT_NEAR(bishop_factor({.cohesion = 0.25, .base = 2}), 1.47, 0.005);
+}
+
+TEST(slices, go_through_the_toe_above_a_foundation_of_the_same_ground) {
+  // Griffiths & Lane 1999, example 2: the foundation lets circles dip below the toe, which changes little; those that
+  // touch its base have 1.75.
+  const double deep = bishop_factor({.cohesion = 0.05, .friction = 20, .base = 1.5});
+  EXPECT_LT(deep, bishop_factor({.cohesion = 0.05, .friction = 20}));
+  EXPECT_NEAR(deep, 1.37, 0.01);
+}
+
+TEST(slices, lose_as_much_as_the_water_carries) {
+  // F falls linearly with r_u (Bishop & Morgenstern 1960), as long as the circle stays where it is.
+  const auto factor = [](double water) { return bishop_factor({.cohesion = 0.05, .friction = 20, .water = water}); };
+  const double dry = factor(0), first = dry - factor(0.25), second = factor(0.25) - factor(0.5);
+  EXPECT_GT(first, 0.2);
+  EXPECT_NEAR(first, second, 0.02);
 }
 
 }  // namespace

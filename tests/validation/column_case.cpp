@@ -3,11 +3,6 @@
 // A1 and A1b: columns under their own weight.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/closed_forms.hpp"

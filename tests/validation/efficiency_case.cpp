@@ -4,11 +4,6 @@
 // 14 and 15).
 #include <fmt/format.h>
 
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 

@@ -3,10 +3,6 @@
 // B3: a heap of sand on curved ground, whatever way that faces.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/closed_forms.hpp"

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 
 #include "tests/validation/cases.hpp"
 #include "tests/validation/map_scene.hpp"

@@ -4,10 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <string>
-#include <vector>
 
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
-#include <filesystem>
 
 #include "common/stage/stage.hpp"
 #include "tests/validation/cases.hpp"

@@ -3,9 +3,6 @@
 // Scenes on maps of the driver's own making: ground and release as GeoTIFFs beside the runs.
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "common/gis/geotiff.hpp"
 #include "tests/validation/bench.hpp"
 

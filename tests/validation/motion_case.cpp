@@ -3,9 +3,6 @@
 // B6: an elastic bar in vibration, free fall, the patch test.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 

@@ -3,9 +3,6 @@
 // The table of all rows, for people and as JSON.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "tests/validation/bench.hpp"
 
 namespace talus::validation {

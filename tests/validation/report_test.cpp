@@ -5,12 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
-
-#include "tests/validation/costs.hpp"
 
 namespace talus::validation {
 namespace {

@@ -4,13 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "tests/validation/cases.hpp"
-#include "tests/validation/chart.hpp"
 #include "tests/validation/sand_deposit.hpp"
 
 namespace talus::validation {

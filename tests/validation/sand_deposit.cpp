@@ -3,10 +3,6 @@
 #include "tests/validation/sand_deposit.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
 
 namespace talus::validation {
 namespace {

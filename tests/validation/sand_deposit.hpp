@@ -3,9 +3,6 @@
 // What a column of sand leaves behind: how far and how high it lies, and its profile.
 #pragma once
 
-#include <string>
-
-#include "tests/validation/bench.hpp"
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/sand_scene.hpp"

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "tests/validation/closed_forms.hpp"
 #include "tests/validation/points.hpp"
 #include "tests/validation/recipe_text.hpp"
-#include "tests/validation/sand_laws.hpp"
 
 namespace talus::validation {
 

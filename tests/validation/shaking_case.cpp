@@ -3,10 +3,6 @@
 // B7: a block on shaking ground.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "common/stage/stage.hpp"
 #include "tests/common/shaken_block.hpp"
 #include "tests/validation/cases.hpp"

@@ -4,11 +4,6 @@
 // on the same grid.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
 #include "tests/validation/sand_scene.hpp"
