@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as an accelerogram: samples later and later with finite velocities, or refused by line.
-#include <cmath>
-
 #include "solver/scene/read_shaking.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -4,7 +4,6 @@
 #include "common/gis/outlines.hpp"
 
 #include <cstring>
-#include <stdexcept>
 
 #include "common/gis/polygons.hpp"
 #include "tests/fuzz/target.hpp"

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a recipe: read with a key of every kind, or refused in words.
-#include "common/recipe/recipe.hpp"
-
 #include "tests/common/sample_options.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <vector>
 
 #include "tests/fuzz/target.hpp"
 

@@ -4,9 +4,6 @@
 
 #include <unistd.h>
 
-#include <fstream>
-#include <stdexcept>
-
 #include "common/stage/checksum.hpp"
 
 namespace talus::fuzz {
