@@ -82,7 +82,7 @@ constexpr GoneKeys gone_keys[] = {
      "Leave it out; voxels are a quarter of the smaller of spacing_m and layer_height_m"},
     {"preprocess.place.layer where", behind_the_file},
     {"preprocess.release.layer where", behind_the_file},
-    {"preprocess.release.volume_factor", "Give thickness_m, or thickness_factor in [preprocess] for all releases"},
+    {"preprocess.release.volume_factor", "Give volume_m3 of the release, or thickness_factor in [preprocess] for all"},
     {"preprocess.source.layer where", behind_the_file},
     {"preprocess.source.seed_x_m seed_y_m", "Give seed_m = [easting, northing]"},
     {"preprocess.source.sliding_surface.depth_points_hold", "Name the column of depths \"depth\"; z is an elevation"},
@@ -97,7 +97,7 @@ constexpr GoneKeys gone_keys[] = {
     {"slides.thickness_from", "Add [[slides.set]] with key = \"preprocess.release[0].thickness_m\" and the attribute"},
     {"slides.volume_from",
      "Add [[slides.set]] with key = \"preprocess.source.sliding_surface.volume_m3\" and the attribute; with base_dem "
-     "\"preprocess.release[0].thickness_m\" and one that holds volume over area"},
+     "\"preprocess.release[0].volume_m3\""},
     {"slides.scenario.depth_m volume_m3",
      "Put \"preprocess.source.sliding_surface.depth_m=...\" or \"...volume_m3=...\" into set"},
     {"slides.scenario.thickness_m", "Put \"preprocess.release[0].thickness_m=...\" into set"},

@@ -24,6 +24,7 @@ struct ReleaseOptions {
   std::filesystem::path polygons;
   std::string attribute = "thickness";
   double thickness = 0;  ///< one thickness for all polygons [m]; 0: that of the attribute
+  double volume = 0;     ///< to which the thickness is scaled [m3]; 0: as the thickness says
   double grow = 0;       ///< of its polygons, outwards [m]
   Direction direction = Direction::vertical;
 
@@ -32,9 +33,14 @@ struct ReleaseOptions {
   void describe(recipe::Visitor& v, const std::string& place, bool needed) {
     describe_thickness(v, place, needed);
     v.text("attribute", attribute, "the polygons' attribute that holds the thickness [m]");
-    v.needs(!needed || polygons.empty() || thickness != 0 || !attribute.empty(),
+    v.number("volume_m3", volume, recipe::not_negative,
+             "volume of the release: a raster is scaled to it, polygons get one thickness; 0 = as the thickness says");
+    v.needs(
+        !needed || volume == 0 || thickness == 0,
+        fault(place + ": thickness_m beside volume_m3", "each says by itself how much is released", "Leave one out"));
+    v.needs(!needed || polygons.empty() || thickness != 0 || volume != 0 || !attribute.empty(),
             fault(place + ": polygons without thickness", "attribute is empty and thickness_m is 0",
-                  "Name the attribute that holds the thickness, or give thickness_m"));
+                  "Name the attribute that holds the thickness, or give thickness_m or volume_m3"));
     v.number("grow_m", grow, recipe::any, "the polygons grown by this on all sides; negative: shrunk");
     v.needs(!needed || grow == 0 || !polygons.empty(),
             fault(place + ": grow_m is given without polygons", "a raster of thickness has no outline to grow",

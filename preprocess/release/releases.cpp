@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/error.hpp"
 #include "common/gis/read_raster.hpp"
@@ -44,6 +45,7 @@ Raster from_raster(const ReleaseOptions& options, const MapGrid& grid) {
 
 double thickness_of(const MapPolygon& polygon, std::size_t number, const ReleaseOptions& options) {
   if (options.thickness > 0) return options.thickness;
+  if (options.volume > 0) return 1;
   const std::string place = fmt::format("{}: polygon {}", options.polygons.string(), number);
   std::string others;
   for (const auto& [name, value] : polygon.numbers) {
@@ -107,6 +109,12 @@ Release read_release(const ReleaseOptions& options, std::size_t item, const Rast
   if (options.direction == Direction::slope_normal) {
     const std::vector<double> cosine = slope_cosine(bed);
     for (std::size_t i = 0; i < cosine.size(); ++i) release.thickness.values[i] /= cosine[i];
+  }
+  if (options.volume > 0) {
+    const double area = bed.grid.cell * bed.grid.cell;
+    const double factor = options.volume / (area * std::accumulate(release.thickness.values.begin(),
+                                                                   release.thickness.values.end(), 0.0));
+    for (double& t : release.thickness.values) t *= factor;
   }
   return release;
 }

@@ -115,15 +115,15 @@ void check_amount(const Slide& slide, ModelIs model, std::vector<Fault>& faults)
     if (onto && sets(key))
       faults.push_back({fmt::format("{}: {}, with base_dem", slide.place, key),
                         "what is released lies on base_dem, and has a thickness",
-                        fmt::format("Set {}, or give the model as before_dem", thickness_key)});
-  if (!onto && sets(thickness_key))
-    faults.push_back({fmt::format("{}: {}, with before_dem", slide.place, thickness_key),
+                        fmt::format("Set {} or {}, or give the model as before_dem", thickness_key, volume_key)});
+  if (const char* given = sets(thickness_key) ? thickness_key : sets(volume_key) ? volume_key : nullptr; given && !onto)
+    faults.push_back({fmt::format("{}: {}, with before_dem", slide.place, given),
                       "what fails there lies above a curved sliding surface, and has a largest depth",
                       fmt::format("Set {} or {}, or give the model as base_dem", cut_keys[0], cut_keys[1])});
-  if (onto && !sets(thickness_key) && faults.empty())
-    faults.push_back(
-        {slide.place + ": no thickness", "nothing says how much is released",
-         fmt::format("Set {}, in [[slides.set]] by an attribute, in [[slides.scenario]] by set", thickness_key)});
+  if (onto && !sets(thickness_key) && !sets(volume_key) && faults.empty())
+    faults.push_back({slide.place + ": no thickness", "nothing says how much is released",
+                      fmt::format("Set {} or {}, in [[slides.set]] by an attribute, in [[slides.scenario]] by set",
+                                  thickness_key, volume_key)});
 }
 
 void check_names(const std::vector<Slide>& slides, std::vector<Fault>& faults) {

@@ -26,9 +26,9 @@ bool gives(const recipe::Recipe& recipe, const std::string& key) {
   return recipe.canonical("preprocess").value_or("").find("\"" + key + "\":") != std::string::npos;
 }
 
-/// The one [[preprocess.release]] of a slide, which sets its thickness.
-std::string release_of(const std::filesystem::path& source) {
-  return fmt::format("preprocess.release=[{{polygons={},thickness_m=1.0}}]", recipe::toml_text(source.string()));
+/// The one [[preprocess.release]] of a slide, which sets this amount.
+std::string release_of(const std::filesystem::path& source, const char* amount) {
+  return fmt::format("preprocess.release=[{{polygons={},{}=1.0}}]", recipe::toml_text(source.string()), amount);
 }
 
 std::string source_of(const std::filesystem::path& source) {
@@ -48,7 +48,8 @@ std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapG
   if (model == ModelIs::base) {
     std::vector<MapPolygon> turned = slide.outline;
     check_polygons(turned, slide.place);
-    values.push_back(release_of(slide.source));
+    const bool by_volume = std::ranges::any_of(slide.set, [](const auto& one) { return one.first == volume_key; });
+    values.push_back(release_of(slide.source, by_volume ? "volume_m3" : "thickness_m"));
   } else {
     values.push_back(source_of(slide.source));
   }
@@ -86,10 +87,10 @@ void refuse_own_keys(const MemberTable& table) {
     for (const char* own : of_slides)
       if (!is_amount(column.key) && (column.key == own || column.key.starts_with(std::string(own) + ".") ||
                                      column.key.starts_with(std::string(own) + "[")))
-        throw RecipeError(
-            Fault{"[slides]: " + column.key + " cannot be set by an attribute",
-                  "what is released, and on which ground, [slides] says itself",
-                  fmt::format("Set {}, {} or {}, or leave it out", thickness_key, cut_keys[0], cut_keys[1])});
+        throw RecipeError(Fault{
+            "[slides]: " + column.key + " cannot be set by an attribute",
+            "what is released, and on which ground, [slides] says itself",
+            fmt::format("Set {}, {}, {} or {}, or leave it out", thickness_key, volume_key, cut_keys[0], cut_keys[1])});
 }
 
 /// The faults of a slide's recipe, with the slide in the place of the command line's --set.
@@ -122,7 +123,7 @@ ModelIs model_of(const recipe::Recipe& recipe) {
 Options shared_options(const recipe::Recipe& recipe, const SlideOptions& slides) {
   const std::filesystem::path& some = slides.scenario.empty() ? slides.outlines : slides.scenario.front().outline;
   const bool onto = model_of(recipe) == ModelIs::base;
-  return recipe.with({onto ? release_of(some) : source_of(some)}).read<Options>("preprocess");
+  return recipe.with({onto ? release_of(some, "thickness_m") : source_of(some)}).read<Options>("preprocess");
 }
 
 EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& slides, const SlideWindows& windows,

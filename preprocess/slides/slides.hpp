@@ -25,11 +25,14 @@ enum class ModelIs { base, before };
 
 /// The keys that say how much a slide releases: laid onto base_dem, cut out of before_dem.
 inline constexpr const char* thickness_key = "preprocess.release[0].thickness_m";
+inline constexpr const char* volume_key = "preprocess.release[0].volume_m3";
 inline constexpr const char* cut_keys[] = {"preprocess.source.sliding_surface.depth_m",
                                            "preprocess.source.sliding_surface.volume_m3"};
 
 /// Whether a key is one of these.
-inline bool is_amount(std::string_view key) { return key == thickness_key || key == cut_keys[0] || key == cut_keys[1]; }
+inline bool is_amount(std::string_view key) {
+  return key == thickness_key || key == volume_key || key == cut_keys[0] || key == cut_keys[1];
+}
 
 /// Which of them the recipe means. Throws RecipeError: neither or both are given, or what fails is given besides.
 ModelIs model_of(const recipe::Recipe& recipe);

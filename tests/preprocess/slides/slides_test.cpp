@@ -128,6 +128,14 @@ TEST(Slides, of_a_thickness_have_the_volume_of_their_area_times_it) {
   EXPECT_NEAR(made.total.volume, 4800, 1e-9 * 4800);
 }
 
+TEST(Slides, of_a_volume_have_it) {
+  const ManySlides many;
+  many.outlines({ManySlides::feature(300, 200, R"("name":"a","v":7000)")});
+  const EnsemblePlan plan = ManySlides::plan(many.recipe(with_set({{volume_key, "v"}}) + "margin_m = 100.0\n"));
+  const Prepared made = prepare(*plan.ground[0], Points::counted);
+  EXPECT_NEAR(made.total.volume, 7000, 1e-9 * 7000);
+}
+
 TEST(Slides, are_cut_out_of_the_model_by_depth_where_it_is_the_surface_before) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","d":4)")});
@@ -202,7 +210,7 @@ TEST(Slides, take_no_keys_that_are_theirs_and_no_value_twice) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)")});
   const std::string own = ManySlides::fault(
-      many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.release[0].volume_factor", "depth"}})));
+      many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.release[0].grow_m", "depth"}})));
   EXPECT_NE(own.find("cannot be set by an attribute"), std::string::npos) << own;
   const std::string grid =
       ManySlides::fault(many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.grid.spacing_m", "depth"}})));
