@@ -9,22 +9,12 @@
 
 #include "common/error.hpp"
 #include "common/gis/gdal_support.hpp"
+#include "common/gis/vector_layer.hpp"
 
 namespace talus {
 namespace {
 
 constexpr int chords = 36;  // of a quarter of a circle: within 1 - cos(pi / 144), a thousandth of the radius
-
-OGRPolygon ogr_polygon(const MapPolygon& polygon) {
-  OGRPolygon shape;
-  for (const auto& ring : polygon.rings) {
-    OGRLinearRing line;
-    for (const auto& [x, y] : ring) line.addPoint(x, y);
-    line.closeRings();
-    shape.addRing(&line);
-  }
-  return shape;
-}
 
 void add_ring(MapPolygon& polygon, const OGRLinearRing* line) {
   auto& ring = polygon.rings.emplace_back();
@@ -34,24 +24,21 @@ void add_ring(MapPolygon& polygon, const OGRLinearRing* line) {
 
 /// Adds the polygons that a geometry holds, with the attributes of `like`.
 void add_shapes(const OGRGeometry& shape, const MapPolygon& like, std::vector<MapPolygon>& polygons) {
-  const auto flat = wkbFlatten(shape.getGeometryType());
-  if (flat == wkbMultiPolygon || flat == wkbGeometryCollection) {
-    const auto& parts = *shape.toGeometryCollection();
-    for (int i = 0; i < parts.getNumGeometries(); ++i) add_shapes(*parts.getGeometryRef(i), like, polygons);
-  }
-  if (flat != wkbPolygon || shape.IsEmpty()) return;
-  MapPolygon polygon{{}, like.numbers, like.name};
-  const OGRPolygon& rings = *shape.toPolygon();
-  add_ring(polygon, rings.getExteriorRing());
-  if (polygon.rings.empty()) return;
-  for (int i = 0; i < rings.getNumInteriorRings(); ++i) add_ring(polygon, rings.getInteriorRing(i));
-  polygons.push_back(std::move(polygon));
+  gdal::for_each_part(shape, [&](const OGRGeometry& part) {
+    if (wkbFlatten(part.getGeometryType()) != wkbPolygon || part.IsEmpty()) return;
+    MapPolygon polygon{{}, like.numbers, like.name};
+    const OGRPolygon& rings = *part.toPolygon();
+    add_ring(polygon, rings.getExteriorRing());
+    if (polygon.rings.empty()) return;
+    for (int i = 0; i < rings.getNumInteriorRings(); ++i) add_ring(polygon, rings.getInteriorRing(i));
+    polygons.push_back(std::move(polygon));
+  });
 }
 
 }  // namespace
 
 std::string invalidity_of(const MapPolygon& polygon) {
-  const OGRPolygon shape = ogr_polygon(polygon);
+  const OGRPolygon shape = gdal::ogr_polygon(polygon);
   if (shape.IsEmpty()) return "it has no corners";
   std::string why;  // GEOS gives its reason as a warning
   const auto keep = [](CPLErr, CPLErrorNum, const char* message) {
@@ -72,7 +59,7 @@ std::vector<MapPolygon> grown(const std::vector<MapPolygon>& polygons, double di
   std::vector<MapPolygon> result;
   for (const MapPolygon& polygon : polygons) {
     const gdal::QuietErrors errors;
-    const std::unique_ptr<OGRGeometry> shape(ogr_polygon(polygon).Buffer(distance, chords));
+    const std::unique_ptr<OGRGeometry> shape(gdal::ogr_polygon(polygon).Buffer(distance, chords));
     if (!shape)
       throw DataError({fmt::format("{}: cannot be grown by {:g} m", file.string(), distance), errors.text(),
                        "Mend the outline: ogr2ogr -makevalid out.gpkg " + file.string()});

@@ -11,7 +11,7 @@
 
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/outlines.hpp"
-#include "common/map/polygon.hpp"
+#include "common/gis/vector_layer.hpp"
 #include "common/stage/stage.hpp"
 #include "common/stage/write_fault.hpp"
 
@@ -40,21 +40,6 @@ class MemoryFile {
   std::string path_;
 };
 
-OGRMultiPolygon multipolygon(const std::vector<MapPolygon>& polygons) {
-  OGRMultiPolygon all;
-  for (const auto& polygon : polygons) {
-    OGRPolygon shape;
-    for (const auto& ring : polygon.rings) {
-      OGRLinearRing line;
-      for (const auto& [x, y] : ring) line.addPoint(x, y);
-      line.closeRings();
-      shape.addRing(&line);
-    }
-    all.addGeometry(&shape);
-  }
-  return all;
-}
-
 /// The names of all numbers in a layer, each once, in the order they come.
 std::vector<std::string> number_names(const OutlineLayer& layer) {
   std::vector<std::string> names;
@@ -72,7 +57,11 @@ bool add_field(OGRLayer& layer, const std::string& name, OGRFieldType type) {
 
 bool add_feature(OGRLayer& layer, const OutlineFeature& outline) {
   if (outline.polygons.empty()) return true;
-  const OGRMultiPolygon shape = multipolygon(outline.polygons);
+  OGRMultiPolygon shape;
+  for (const auto& polygon : outline.polygons) {
+    const OGRPolygon part = gdal::ogr_polygon(polygon);
+    shape.addGeometry(&part);
+  }
   OGRFeature feature(layer.GetLayerDefn());
   feature.SetField("name", outline.name.c_str());
   feature.SetField("area_m2", shape.get_Area());

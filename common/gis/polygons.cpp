@@ -14,15 +14,21 @@ namespace {
 
 using Ring = std::vector<std::array<double, 2>>;
 
-Ring ring_of(const OGRLinearRing& line, const fs::path& file) {
-  Ring ring;
+/// The points of a line, none repeated. Throws DataError where one is not a number, of `what` it is a vertex and how to
+/// `mend` that.
+MapLine points_of(const OGRSimpleCurve& line, const fs::path& file, const char* what, const std::string& mend) {
+  MapLine points;
   for (int i = 0; i < line.getNumPoints(); ++i) {
     const std::array<double, 2> point{line.getX(i), line.getY(i)};
     if (!std::isfinite(point[0]) || !std::isfinite(point[1]))
-      throw DataError({file.string() + ": a polygon has a vertex that is not a number", "",
-                       "Mend it: ogr2ogr -makevalid out.gpkg " + file.string()});
-    if (ring.empty() || ring.back() != point) ring.push_back(point);
+      throw DataError({fmt::format("{}: {} has a vertex that is not a number", file.string(), what), "", mend});
+    if (points.empty() || points.back() != point) points.push_back(point);
   }
+  return points;
+}
+
+Ring ring_of(const OGRLinearRing& line, const fs::path& file) {
+  Ring ring = points_of(line, file, "a polygon", "Mend it: ogr2ogr -makevalid out.gpkg " + file.string());
   if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
   return ring;
 }
@@ -52,78 +58,54 @@ MapPolygon attributes_of(const OGRFeature& feature) {
   return polygon;
 }
 
-struct Reading {
-  const gdal::VectorLayer& from;
-  std::vector<MapPolygon> polygons{};
-
-  /// The polygons of a feature, in other coordinates; the name of its shape, empty where it has none.
-  std::string add(const OGRFeature& feature) {
-    const std::unique_ptr<OGRGeometry> shape = from.shape_of(feature);
-    if (shape == nullptr) return "";
-    add(feature, *shape);
-    return shape->getGeometryName();
-  }
-
-  void add(const OGRFeature& feature, const OGRGeometry& shape) {
-    const auto flat = wkbFlatten(shape.getGeometryType());
-    if (flat == wkbMultiPolygon || flat == wkbGeometryCollection) {
-      const auto& parts = *shape.toGeometryCollection();
-      for (int i = 0; i < parts.getNumGeometries(); ++i) add(feature, *parts.getGeometryRef(i));
-    }
-    if (flat != wkbPolygon) return;
+/// The polygons of a feature; `other` becomes the name of its shape where that holds none.
+std::vector<MapPolygon> polygons_of(const gdal::VectorLayer& from, const OGRFeature& feature, std::string& other) {
+  std::vector<MapPolygon> polygons;
+  const std::unique_ptr<OGRGeometry> shape = from.shape_of(feature);
+  if (shape == nullptr) return polygons;
+  gdal::for_each_part(*shape, [&](const OGRGeometry& part) {
+    if (wkbFlatten(part.getGeometryType()) != wkbPolygon) return;
     MapPolygon polygon = attributes_of(feature);
-    polygon.rings = rings_of(*shape.toPolygon(), from.file());
+    polygon.rings = rings_of(*part.toPolygon(), from.file());
     if (!polygon.rings.empty()) polygons.push_back(std::move(polygon));
-  }
-};
+  });
+  if (polygons.empty()) other = shape->getGeometryName();
+  return polygons;
+}
 
 void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLine>& lines) {
-  const auto flat = wkbFlatten(shape.getGeometryType());
-  if (flat == wkbMultiLineString || flat == wkbGeometryCollection) {
-    const auto& parts = *shape.toGeometryCollection();
-    for (int i = 0; i < parts.getNumGeometries(); ++i) add_lines(*parts.getGeometryRef(i), file, lines);
-  }
-  if (flat != wkbLineString) return;
-  const auto& line = *shape.toLineString();
-  MapLine points;
-  for (int i = 0; i < line.getNumPoints(); ++i) {
-    const std::array<double, 2> point{line.getX(i), line.getY(i)};
-    if (!std::isfinite(point[0]) || !std::isfinite(point[1]))
-      throw DataError({file.string() + ": a line has a vertex that is not a number", "", "Draw the line again"});
-    if (points.empty() || points.back() != point) points.push_back(point);
-  }
-  if (points.size() > 1) lines.push_back(std::move(points));
+  gdal::for_each_part(shape, [&](const OGRGeometry& part) {
+    if (wkbFlatten(part.getGeometryType()) != wkbLineString) return;
+    MapLine points = points_of(*part.toLineString(), file, "a line", "Draw the line again");
+    if (points.size() > 1) lines.push_back(std::move(points));
+  });
 }
 
 }  // namespace
 
 std::vector<MapPolygon> read_polygons(const fs::path& source, const std::string& crs_wkt, const std::string& usual) {
   const gdal::VectorLayer from(source, crs_wkt, usual);
-  Reading reading{from};
+  std::vector<MapPolygon> polygons;
   std::string other;
-  for (const auto& feature : from.layer()) {
-    const std::size_t before = reading.polygons.size();
-    const std::string shape = reading.add(*feature);
-    if (reading.polygons.size() == before && !shape.empty()) other = shape;
-  }
+  for (const auto& feature : from.layer())
+    for (MapPolygon& polygon : polygons_of(from, *feature, other)) polygons.push_back(std::move(polygon));
   from.require_whole();
-  if (reading.polygons.empty())
+  if (polygons.empty())
     throw DataError(from.none_found("polygon", other, "Draw the outline as a polygon, or name another layer"));
-  return reading.polygons;
+  return polygons;
 }
 
 std::vector<PolygonFeature> read_polygon_features(const fs::path& source, const std::string& crs_wkt) {
   const gdal::VectorLayer from(source, crs_wkt);
   const std::string file = from.file().string(), id = from.layer().GetFIDColumn();
   std::vector<PolygonFeature> features;
+  std::string other;
   for (const auto& feature : from.layer()) {
-    Reading reading{from};
-    reading.add(*feature);
     const std::string where = fmt::format("{} = {}", id.empty() ? "FID" : '"' + id + '"', feature->GetFID());
     features.push_back({.source = VectorSource{from.file(), from.layer().GetName(), where}.text(),
                         .place = fmt::format("{}, feature {}", file, feature->GetFID()),
                         .number = feature->GetFID(),
-                        .polygons = std::move(reading.polygons),
+                        .polygons = polygons_of(from, *feature, other),
                         .values = gdal::values_of(*feature)});
   }
   from.require_whole();

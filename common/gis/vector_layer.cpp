@@ -79,6 +79,22 @@ Fault VectorLayer::none_found(const std::string& what, const std::string& other,
           other.empty() ? nothing : "it holds " + other, mend + " (FILE|layername=LAYER|subset=CONDITION)"};
 }
 
+void for_each_part(const OGRGeometry& shape, const std::function<void(const OGRGeometry&)>& take) {
+  if (OGR_GT_IsSubClassOf(shape.getGeometryType(), wkbGeometryCollection) == 0) return take(shape);
+  for (const OGRGeometry* part : *shape.toGeometryCollection()) for_each_part(*part, take);
+}
+
+OGRPolygon ogr_polygon(const MapPolygon& polygon) {
+  OGRPolygon shape;
+  for (const auto& ring : polygon.rings) {
+    OGRLinearRing line;
+    for (const auto& [x, y] : ring) line.addPoint(x, y);
+    line.closeRings();
+    shape.addRing(&line);
+  }
+  return shape;
+}
+
 bool is_numeric(const OGRFeature& feature, int field) {
   const OGRFieldType type = feature.GetFieldDefnRef(field)->GetType();
   return type == OFTInteger || type == OFTInteger64 || type == OFTReal ||

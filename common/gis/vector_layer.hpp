@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the readers of vector files share: a layer opened, its features chosen and carried to another CRS. Nobody else
-// includes it.
+// What the sources about vector files share: a layer opened, its features chosen and carried to another CRS, polygons
+// as OGR has them. Nobody else includes it.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,6 +44,12 @@ class VectorLayer {
   OGRLayer* layer_ = nullptr;
   Transformation transformation_;  ///< none: shapes stay where they are
 };
+
+/// Calls `take` for a shape and for each part of what is a collection, down to those that are none.
+void for_each_part(const OGRGeometry& shape, const std::function<void(const OGRGeometry&)>& take);
+
+/// A polygon as OGR has it, its rings closed.
+OGRPolygon ogr_polygon(const MapPolygon& polygon);
 
 /// Text that is a number as a whole counts as one.
 bool is_numeric(const OGRFeature& feature, int field);
