@@ -23,7 +23,7 @@
 #include "postprocess/ensemble/run_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/survey/found_survey.hpp"
-#include "postprocess/survey/order.hpp"
+#include "postprocess/survey/survey.hpp"
 #include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {

@@ -9,7 +9,6 @@
 #include "postprocess/compare/compare.hpp"
 #include "postprocess/picture/hillshade.hpp"
 #include "postprocess/picture/layers.hpp"
-#include "postprocess/picture/places.hpp"
 
 namespace talus::postprocess {
 namespace {

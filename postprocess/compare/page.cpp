@@ -91,18 +91,16 @@ std::string change(const Json& a, const Json& b) {
   return fmt::format("{:+.4g}{}", to - from, percent);
 }
 
-std::string row(const std::vector<std::string>& cells, bool numbers) {
+/// A row of cells of a kind, "td" or "th"; with `numbers` all but the first stand to the right.
+std::string row(const std::vector<std::string>& cells, bool numbers, const char* kind = "td") {
   std::string text = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i)
-    text += fmt::format("<td{}>{}</td>", i > 0 && numbers ? " class=\"n\"" : "", escaped_xml(cells[i]));
-  return text + "</tr>\n";
+    text += fmt::format("<{0}{1}>{2}</{0}>", kind, i > 0 && numbers ? " class=\"n\"" : "", escaped_xml(cells[i]));
+  return text + "</tr>";
 }
 
 std::string table(const std::vector<std::string>& heads, const std::string& rows, bool numbers) {
-  std::string text = "<table><thead><tr>";
-  for (std::size_t i = 0; i < heads.size(); ++i)
-    text += fmt::format("<th{}>{}</th>", i > 0 && numbers ? " class=\"n\"" : "", escaped_xml(heads[i]));
-  return text + "</tr></thead><tbody>\n" + rows + "</tbody></table>\n";
+  return "<table><thead>" + row(heads, numbers, "th") + "</thead><tbody>\n" + rows + "</tbody></table>\n";
 }
 
 Json score_of(const ComparedRun& run) {
@@ -143,7 +141,7 @@ std::string score_tables(const ComparedRun& first, const ComparedRun& second) {
       for (const char* beginning : beginnings)
         if (heading.empty() && key.starts_with(beginning)) heading = title;
     const Json ours = a.value(key, Json(nullptr)), theirs = b.value(key, Json(nullptr));
-    rows[heading] += row({label_of(key), value_text(ours), value_text(theirs), change(ours, theirs)}, true);
+    rows[heading] += row({label_of(key), value_text(ours), value_text(theirs), change(ours, theirs)}, true) + "\n";
   }
   std::string text;
   const std::vector<std::string> heads{"", first.name, second.name, "second less first"};
@@ -165,7 +163,7 @@ std::string recipe_table(const ComparedRun& first, const ComparedRun& second) {
     return found == keys.end() ? std::string("\u2013") : without_absolute_paths(found->second);
   };
   for (const auto& [key, unused] : all)
-    if (value(a, key) != value(b, key)) rows += row({key, value(a, key), value(b, key)}, false);
+    if (value(a, key) != value(b, key)) rows += row({key, value(a, key), value(b, key)}, false) + "\n";
   if (a.empty() || b.empty())
     return "<p>What one of the two was computed with is not known: its used recipes are gone.</p>";
   if (rows.empty()) return "<p>The two were computed with the same values.</p>";
@@ -190,7 +188,7 @@ std::string legend(const DepositDifference& found, const ComparedRun& first, con
 
 std::string difference_words(const DepositDifference& d) {
   std::string rows;
-  const auto add = [&](const char* name, const std::string& value) { rows += row({name, value}, true); };
+  const auto add = [&](const char* name, const std::string& value) { rows += row({name, value}, true) + "\n"; };
   add("share of the deposit that lies elsewhere (volumes set equal)", fmt::format("{:.3g} %", 100 * d.moved));
   add("overlap of the deposits, area of both over area of either", fmt::format("{:.3f}", d.overlap));
   add("root mean square of the difference over either", fmt::format("{:.3g} m", d.rms));

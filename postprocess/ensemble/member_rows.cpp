@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "postprocess/fields/csv_field.hpp"
+#include "postprocess/fields/fields.hpp"
 
 namespace talus::postprocess {
 namespace {

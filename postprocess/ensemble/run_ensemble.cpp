@@ -16,7 +16,7 @@
 #include "postprocess/ensemble/write_maps.hpp"
 #include "postprocess/ensemble/write_slides.hpp"
 #include "postprocess/survey/found_survey.hpp"
-#include "postprocess/survey/order.hpp"
+#include "postprocess/survey/survey.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "postprocess/ensemble/budget_table.hpp"
-#include "postprocess/fields/csv_field.hpp"
+#include "postprocess/fields/fields.hpp"
 
 namespace talus::postprocess {
 namespace {

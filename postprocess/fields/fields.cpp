@@ -75,6 +75,15 @@ std::string file_word(const std::string& name) {
   return word;
 }
 
+std::string csv_field(std::string text) {
+  for (char& c : text)
+    if (c == '\n' || c == '\r') c = ' ';
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
 double volume_under(const std::vector<double>& thickness, double cell) {
   long double sum = 0;
   for (const double h : thickness) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The maps a run hands on, as rasters.
+// The maps a run hands on, as rasters; names and texts as files have them.
 #pragma once
 
 #include <string>
@@ -32,6 +32,10 @@ std::string file_word(const std::string& name);
 
 /// Those of several names, in their order: where two would be the same, the later one ends in "-2", "-3", ...
 std::vector<std::string> file_words(const std::vector<std::pair<std::string, std::vector<double>>>& named);
+
+/// A text as a field of comma-separated values: quoted where it holds what separates fields, its line breaks made
+/// spaces.
+std::string csv_field(std::string text);
 
 /// Volume under a thickness raster, NaN as nothing [m3]. Summed in extended precision: it is compared to 1e-9.
 double volume_under(const std::vector<double>& thickness, double cell);

@@ -61,17 +61,13 @@ Files write_geotiffs(const std::filesystem::path& folder, const Run& run) {
   const Files files = geotiff_files(folder, run.maps);
   auto file = files.begin();
   const auto put = [&](const char* long_name, const char* unit, bool zero_inside, const Raster& raster) {
-    RasterTags tags{fmt::format("{} [{}]", long_name, unit), unit, {}};
-    tags.metadata = {
-        {"TITLE", run.summary.title},
-        {"SCENE", run.summary.scene},
-        {"RUN_ID", fact(run.summary.provenance, run_id)},
-        {"QUANTITY", long_name},
-        {"THICKNESS_CONVENTION", "vertical thickness, measured along the plumb line (not normal to the slope)"},
-        {"FLOW_THRESHOLD_M", fmt::format("{}", run.maps.threshold)},
-        {"TIME_END_S", fmt::format("{}", run.summary.time_end)},
-        {"NODATA_MEANING", meaning_of_nodata(zero_inside)},
-        {"SOURCE", "Talus " + run.summary.version}};
+    RasterTags tags = plain_tags(run, long_name, unit);
+    tags.metadata.insert(
+        tags.metadata.end() - 1,
+        {{"THICKNESS_CONVENTION", "vertical thickness, measured along the plumb line (not normal to the slope)"},
+         {"FLOW_THRESHOLD_M", fmt::format("{}", run.maps.threshold)},
+         {"TIME_END_S", fmt::format("{}", run.summary.time_end)},
+         {"NODATA_MEANING", meaning_of_nodata(zero_inside)}});
     if (const std::string accepted = accepted_line(run.summary.findings); !accepted.empty())
       tags.metadata.emplace_back("ACCEPTED", accepted);
     if (!run.summary.sanity.words.empty()) tags.metadata.emplace_back("SANITY", run.summary.sanity.words);

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/picture/animation.hpp"
-
+// The map over time as a film, encoded by ffmpeg.
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,6 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int seconds_at_the_end = 2;
+
+/// Frames per second for a film of about eight seconds: 2 to 25.
+int film_rate(std::size_t frames) {
+  return std::clamp(static_cast<int>(std::lround(static_cast<double>(frames) / 8)), 2, 25);
+}
 
 bool has_program(const std::string& name) {
   const char* path = std::getenv("PATH");
@@ -138,10 +142,6 @@ class AnimationWriter : public Writer {
 };
 
 }  // namespace
-
-int film_rate(std::size_t frames) {
-  return std::clamp(static_cast<int>(std::lround(static_cast<double>(frames) / 8)), 2, 25);
-}
 
 std::shared_ptr<Writer> animation_writer() { return std::make_shared<AnimationWriter>(); }
 

@@ -3,15 +3,30 @@
 // What lies inside the map's frame.
 #pragma once
 
+#include <array>
+#include <string>
 #include <vector>
 
 #include "common/map/isolines.hpp"
+#include "common/map/places.hpp"
 #include "common/map/polygon.hpp"
+#include "postprocess/fields/window.hpp"
 #include "postprocess/picture/canvas.hpp"
 #include "postprocess/picture/map_picture.hpp"
-#include "postprocess/picture/view.hpp"
 
 namespace talus::postprocess {
+
+/// Map coordinates to pixels.
+struct View {
+  Window window;
+  Box box;  // on the canvas
+  /// Pixels to a metre.
+  double scale() const { return box.width / window.width(); }  // [px/m]
+  /// The place of map coordinates (x, y) on the canvas [px].
+  std::array<double, 2> pixel(double x, double y) const {
+    return {box.x + (x - window.west) * scale(), box.y + (window.north - y) * scale()};
+  }
+};
 
 /// A colour times a brightness.
 Colour scaled(const Colour& c, double factor);
@@ -66,5 +81,12 @@ void draw_hazard(Canvas& canvas, const View& view, const MapGrid& grid, const Ha
 
 /// Outlines: release, footprint, and the survey's deposit and footprint, or whichever of the two it has.
 void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input);
+
+/// Draws gauges as dots and obstacles by their outlines, each with its name where they are no more than twelve; what
+/// lies outside the view is left out.
+void draw_places(Canvas& canvas, const View& view, const std::vector<MapPlace>& places);
+
+/// The name of a place without its kind: "bridge" of "gauge bridge".
+std::string name_of(const MapPlace& place);
 
 }  // namespace talus::postprocess

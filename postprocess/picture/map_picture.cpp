@@ -8,7 +8,6 @@
 #include "postprocess/fields/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/layers.hpp"
-#include "postprocess/picture/places.hpp"
 #include "postprocess/picture/search_words.hpp"
 #include "postprocess/writers/job.hpp"
 

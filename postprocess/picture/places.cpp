@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/picture/places.hpp"
+#include "postprocess/picture/layers.hpp"
 
 #include <algorithm>
 #include <cmath>

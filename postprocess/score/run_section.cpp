@@ -9,20 +9,13 @@
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
+#include "postprocess/fields/classes.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/fields/release.hpp"
 #include "postprocess/score/sections.hpp"
 
 namespace talus::postprocess {
 namespace {
-
-double largest(const std::vector<double>& values) {
-  double top = 0;
-  for (const double v : values) {
-    if (v > top) top = v;
-  }
-  return top;
-}
 
 double area_above(const std::vector<double>& values, double threshold, double cell) {
   return static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v > threshold; })) *

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/survey/order.hpp"
+#include "postprocess/survey/survey.hpp"
 
 #include <fmt/format.h>
 

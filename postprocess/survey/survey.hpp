@@ -73,4 +73,9 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
 /// Area-weighted, so that volume is kept; where the run's map ends but the survey goes on, nothing arrived: 0.
 OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey);
 
+/// Refuses, unless accepted ("swapped-surveys"), that a surveyed change would have carried mass uphill: what
+/// rose by more than the footprint's threshold lies higher, on average by volume, than what fell by as much, and is
+/// more than a tenth of it. A survey that is no change of the surface says nothing of this.
+void judge_order(const Survey& survey, const RunMaps& maps);
+
 }  // namespace talus::postprocess

@@ -11,9 +11,9 @@
 #include "postprocess/fields/classes.hpp"
 #include "postprocess/picture/furniture.hpp"
 #include "postprocess/picture/hillshade.hpp"
+#include "postprocess/picture/layers.hpp"
 #include "postprocess/picture/map_picture.hpp"
 #include "postprocess/picture/search_words.hpp"
-#include "postprocess/picture/view.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {

@@ -13,7 +13,6 @@
 #include "common/gis/coordinates.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/survey/found_survey.hpp"
-#include "postprocess/survey/order.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/postprocess/scene.hpp"
 
