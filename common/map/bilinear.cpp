@@ -20,7 +20,7 @@ double bilinear(const Raster& source, double x, double y) {
   for (int j = 0; j < 2; ++j) {
     for (int i = 0; i < 2; ++i) {
       const int c = left + i, r = below + j;
-      if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows || std::isnan(source.at(c, r))) continue;
+      if (!grid.holds(c, r) || std::isnan(source.at(c, r))) continue;
       const double weight = (i == 0 ? 1 - s : s) * (j == 0 ? 1 - t : t);
       sum += weight * source.at(c, r);
       weights += weight;

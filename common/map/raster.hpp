@@ -4,6 +4,8 @@
 // raster_io. Knows nothing of GDAL.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -29,6 +31,13 @@ struct MapGrid {
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
+  /// Column and row of a place in arrays over the grid.
+  std::array<int, 2> cell_of(std::size_t index) const {
+    const auto width = static_cast<std::size_t>(columns);
+    return {static_cast<int>(index % width), static_cast<int>(index / width)};
+  }
+  /// True for a cell on the grid.
+  bool holds(int column, int row) const { return column >= 0 && row >= 0 && column < columns && row < rows; }
   /// Easting of the centre of a column [m].
   double x(int column) const { return west + (column + 0.5) * cell; }  // centre [m]
   /// Northing of the centre of a row [m].
@@ -38,6 +47,14 @@ struct MapGrid {
   /// Outer edge of the last row [m].
   double north() const { return south + rows * cell; }
 };
+
+/// Calls visit(column, row) for the cells of a grid within `reach` columns and rows of one, itself among them, row by
+/// row.
+template <class Visit>
+void each_near(const MapGrid& grid, const std::array<int, 2>& cell, int reach, const Visit& visit) {
+  for (int r = std::max(0, cell[1] - reach); r <= std::min(grid.rows - 1, cell[1] + reach); ++r)
+    for (int c = std::max(0, cell[0] - reach); c <= std::min(grid.columns - 1, cell[0] + reach); ++c) visit(c, r);
+}
 
 /// A part of a grid, by its cells; row 0 is the southernmost.
 struct CellWindow {

@@ -21,8 +21,7 @@ double derivative(double behind, double here, double ahead, double cell) {
 std::vector<double> slope_cosine(const Raster& surface) {
   const MapGrid& grid = surface.grid;
   const auto value = [&](int column, int row) {
-    const bool inside = column >= 0 && column < grid.columns && row >= 0 && row < grid.rows;
-    return inside ? surface.at(column, row) : std::nan("");
+    return grid.holds(column, row) ? surface.at(column, row) : std::nan("");
   };
   std::vector<double> cosine(grid.count(), 1.0);
   for (int row = 0; row < grid.rows; ++row) {

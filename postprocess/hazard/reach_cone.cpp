@@ -29,8 +29,7 @@ constexpr std::size_t most_crowns = 1000;
 bool at_the_edge(const RunMaps& maps, int column, int row) {
   for (int r = row - 1; r <= row + 1; ++r) {
     for (int c = column - 1; c <= column + 1; ++c) {
-      if (r < 0 || c < 0 || r >= maps.grid.rows || c >= maps.grid.columns) return true;
-      if (!(maps.initial_thickness[maps.grid.index(c, r)] > 0)) return true;
+      if (!maps.grid.holds(c, r) || !(maps.initial_thickness[maps.grid.index(c, r)] > 0)) return true;
     }
   }
   return false;
@@ -76,8 +75,8 @@ std::vector<Crown> crowns_of(const RunMaps& maps, double tangent) {
 
 /// The height of the highest line above the ground of a cell; NaN without ground.
 double head_at(const RunMaps& maps, const std::vector<Crown>& crowns, double tangent, std::size_t i) {
-  const auto columns = static_cast<std::size_t>(maps.grid.columns);
-  const double x = maps.grid.x(static_cast<int>(i % columns)), y = maps.grid.y(static_cast<int>(i / columns));
+  const auto [column, row] = maps.grid.cell_of(i);
+  const double x = maps.grid.x(column), y = maps.grid.y(row);
   double line = -1e300;
   for (const Crown& crown : crowns) line = std::max(line, crown.line_at(x, y, tangent));
   return line - maps.before[i];
@@ -101,12 +100,7 @@ std::vector<double> passed(const RunMaps& maps, const std::vector<Crown>& crowns
   while (!open.empty()) {
     const std::size_t here = open.back();
     open.pop_back();
-    const int column = static_cast<int>(here % static_cast<std::size_t>(maps.grid.columns)),
-              row = static_cast<int>(here / static_cast<std::size_t>(maps.grid.columns));
-    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, maps.grid.rows - 1); ++r) {
-      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, maps.grid.columns - 1); ++c)
-        reach(maps.grid.index(c, r), false);
-    }
+    each_near(maps.grid, maps.grid.cell_of(here), 1, [&](int c, int r) { reach(maps.grid.index(c, r), false); });
   }
   return head;
 }

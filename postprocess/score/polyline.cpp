@@ -100,7 +100,7 @@ struct Search {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const int c = column + dx, r = row + dy;
-        if ((dx == 0 && dy == 0) || c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
+        if ((dx == 0 && dy == 0) || !grid.holds(c, r)) continue;
         const auto there = grid.index(c, r);
         const double sum = total[here] + std::hypot(dx, dy) * 0.5 * (cost[here] + cost[there]);
         if (!(sum < total[there])) continue;
@@ -121,8 +121,8 @@ struct Search {
       open.pop();
       if (here == goal) return;
       if (sum > total[here]) continue;
-      const auto columns = static_cast<std::size_t>(grid.columns);
-      relax(here, static_cast<int>(here % columns), static_cast<int>(here / columns));
+      const auto [column, row] = grid.cell_of(here);
+      relax(here, column, row);
     }
   }
 };
@@ -142,9 +142,9 @@ Polyline flow_path(const MapGrid& grid, const std::vector<double>& thickness, co
   if (start && goal && *start != *goal) {
     Search search{grid, costs_of(thickness)};
     search.run(*start, *goal);
-    const auto columns = static_cast<std::size_t>(grid.columns);
     for (auto cell = search.came_from[*goal]; cell != *start; cell = search.came_from[cell]) {
-      path.push_back({grid.x(static_cast<int>(cell % columns)), grid.y(static_cast<int>(cell / columns))});
+      const auto [column, row] = grid.cell_of(cell);
+      path.push_back({grid.x(column), grid.y(row)});
     }
   }
   path.push_back({from.x, from.y});

@@ -108,16 +108,10 @@ std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>&
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (seeds[i] != 0) reach(i);
   }
-  const auto columns = static_cast<std::size_t>(grid.columns);
   while (!open.empty()) {
     const auto here = open.back();
     open.pop_back();
-    const int column = static_cast<int>(here % columns), row = static_cast<int>(here / columns);
-    for (int r = row - 1; r <= row + 1; ++r) {
-      for (int c = column - 1; c <= column + 1; ++c) {
-        if (r >= 0 && c >= 0 && r < grid.rows && c < grid.columns) reach(grid.index(c, r));
-      }
-    }
+    each_near(grid, grid.cell_of(here), 1, [&](int c, int r) { reach(grid.index(c, r)); });
   }
   auto cleaned = values;
   for (std::size_t i = 0; i < cleaned.size(); ++i) {

@@ -124,8 +124,7 @@ double layer_height(const Options& options, const Raster& release) {
 void warn_at_edge(const Raster& thickness) {
   const MapGrid& grid = thickness.grid;
   for (std::size_t i = 0; i < thickness.values.size(); ++i) {
-    const int column = static_cast<int>(i % static_cast<std::size_t>(grid.columns)),
-              row = static_cast<int>(i / static_cast<std::size_t>(grid.columns));
+    const auto [column, row] = grid.cell_of(i);
     const bool edge = column == 0 || row == 0 || column == grid.columns - 1 || row == grid.rows - 1;
     if (!edge || !(thickness.values[i] > 0)) continue;
     warn("release-at-edge",

@@ -42,10 +42,7 @@ double edge_error(const Raster& thickness, const Change& change, const Raster& s
       const double size = std::abs(change.rise.values[i]), beyond = size - change.levels[i];
       if (!(std::abs(beyond) < sigma.values[i]) || (beyond > 0) != (thickness.values[i] > 0)) continue;
       bool beside = false;
-      for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
-        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c)
-          beside = beside || thickness.at(c, r) > 0;
-      }
+      each_near(grid, {column, row}, 1, [&](int c, int r) { beside = beside || thickness.at(c, r) > 0; });
       if (beside) sum.add(size);
     }
   }

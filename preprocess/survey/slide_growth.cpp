@@ -72,15 +72,12 @@ class Growth {
 
   bool is_near(std::size_t cell) const {
     const MapGrid& grid = ground_.before.grid;
-    const auto columns = static_cast<std::size_t>(grid.columns);
-    const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns),
-              bridge = how_.bridge_cells;
-    for (int r = std::max(0, row - bridge); r <= std::min(grid.rows - 1, row + bridge); ++r) {
-      for (int c = std::max(0, column - bridge); c <= std::min(grid.columns - 1, column + bridge); ++c) {
-        if (reached_[grid.index(c, r)] && !is_barred({column, row}, {c, r})) return true;
-      }
-    }
-    return false;
+    const std::array<int, 2> here = grid.cell_of(cell);
+    bool found = false;
+    each_near(grid, here, how_.bridge_cells, [&](int c, int r) {
+      found = found || (reached_[grid.index(c, r)] && !is_barred(here, {c, r}));
+    });
+    return found;
   }
 
   /// True where ground between two cells stands above both by more than a flow is thick.

@@ -60,11 +60,10 @@ class Sampling {
       const auto [p, i] = cells_.places[any(random_)];
       const MapGrid& grid = patches_[p].before.grid;
       const double lag = from + (to - from) * part(random_), angle = 2 * std::numbers::pi * part(random_);
-      const int column = static_cast<int>(i % static_cast<std::size_t>(grid.columns)) +
-                         static_cast<int>(std::lround(lag * std::cos(angle)));
-      const int row = static_cast<int>(i / static_cast<std::size_t>(grid.columns)) +
-                      static_cast<int>(std::lround(lag * std::sin(angle)));
-      if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) continue;
+      auto [column, row] = grid.cell_of(i);
+      column += static_cast<int>(std::lround(lag * std::cos(angle)));
+      row += static_cast<int>(std::lround(lag * std::sin(angle)));
+      if (!grid.holds(column, row)) continue;
       const std::size_t j = grid.index(column, row);
       if (j == i || std::isnan(normalised_[p][j])) continue;
       all.push_back(std::abs(normalised_[p][i] - normalised_[p][j]));

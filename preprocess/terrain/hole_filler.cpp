@@ -50,9 +50,8 @@ class Surroundings {
   }
 
   bool known(int column, int row) const {
-    const MapGrid& grid = raster_.grid;
-    if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return false;
-    return !(inside(column, row) && in_hole_[index(column, row)] != 0) && !std::isnan(raster_.at(column, row));
+    return raster_.grid.holds(column, row) && !(inside(column, row) && in_hole_[index(column, row)] != 0) &&
+           !std::isnan(raster_.at(column, row));
   }
   double height(int column, int row) const { return raster_.at(column, row); }
 
@@ -60,14 +59,12 @@ class Surroundings {
   std::vector<Cell> rim(const std::vector<Cell>& hole) const {
     std::vector<char> taken(in_hole_.size(), 0);
     std::vector<Cell> cells;
-    for (const auto& [column, row] : hole) {
-      for (int r = row - rim_width; r <= row + rim_width; ++r) {
-        for (int c = column - rim_width; c <= column + rim_width; ++c) {
-          if (!known(c, r) || taken[index(c, r)] != 0) continue;
-          taken[index(c, r)] = 1;
-          cells.push_back({c, r});
-        }
-      }
+    for (const Cell& cell : hole) {
+      each_near(raster_.grid, cell, rim_width, [&](int c, int r) {
+        if (!known(c, r) || taken[index(c, r)] != 0) return;
+        taken[index(c, r)] = 1;
+        cells.push_back({c, r});
+      });
     }
     return cells;
   }

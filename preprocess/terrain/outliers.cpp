@@ -49,12 +49,10 @@ double deviation(const Raster& raster, int column, int row) {
 /// NMAD of the deviations around a cell, its own left out.
 double usual_around(const Raster& deviations, int column, int row) {
   std::vector<double> values;
-  for (int r = std::max(0, row - reach); r <= std::min(deviations.grid.rows - 1, row + reach); ++r) {
-    for (int c = std::max(0, column - reach); c <= std::min(deviations.grid.columns - 1, column + reach); ++c) {
-      const double value = deviations.at(c, r);
-      if ((c != column || r != row) && !std::isnan(value)) values.push_back(value);
-    }
-  }
+  each_near(deviations.grid, {column, row}, reach, [&](int c, int r) {
+    const double value = deviations.at(c, r);
+    if ((c != column || r != row) && !std::isnan(value)) values.push_back(value);
+  });
   if (values.empty()) return 0;
   const double centre = median(values);
   for (double& value : values) value = std::abs(value - centre);
@@ -85,10 +83,9 @@ bool stands_out(double height, const Raster& deviations, int column, int row, do
 /// Beside two pits a plain cell looks like a spike: the farthest out is taken first, and is no neighbour any more.
 std::vector<Outlier> without_shadows(Raster raster, const std::vector<Outlier>& candidates, const Raster& deviations,
                                      double least) {
-  const auto columns = static_cast<std::size_t>(raster.grid.columns);
   std::vector<Outlier> outliers;
   for (const Outlier& candidate : candidates) {
-    const int column = static_cast<int>(candidate.cell % columns), row = static_cast<int>(candidate.cell / columns);
+    const auto [column, row] = raster.grid.cell_of(candidate.cell);
     const double height = deviation(raster, column, row);
     if (!stands_out(height, deviations, column, row, least)) continue;
     outliers.push_back({candidate.cell, height});

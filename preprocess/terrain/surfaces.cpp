@@ -125,29 +125,25 @@ Filled fill(const Elevation& dem, const Raster& raster, double largest_m2) {
 }  // namespace
 
 std::string place_of(const MapGrid& grid, std::size_t cell) {
-  const auto columns = static_cast<std::size_t>(grid.columns);
-  return fmt::format("x {:.1f}, y {:.1f}", grid.x(static_cast<int>(cell % columns)),
-                     grid.y(static_cast<int>(cell / columns)));
+  const auto [column, row] = grid.cell_of(cell);
+  return fmt::format("x {:.1f}, y {:.1f}", grid.x(column), grid.y(row));
 }
 
 std::vector<char> reaching_edge(const MapGrid& grid, const std::vector<char>& marked) {
   std::vector<char> reached(marked.size(), 0);
-  std::vector<std::pair<int, int>> todo;
+  std::vector<std::array<int, 2>> todo;
   const auto visit = [&](int column, int row) {
-    if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return;
     const std::size_t i = grid.index(column, row);
     if (!marked[i] || reached[i]) return;
     reached[i] = 1;
-    todo.emplace_back(column, row);
+    todo.push_back({column, row});
   };
   for (int column = 0; column < grid.columns; ++column) visit(column, 0), visit(column, grid.rows - 1);
   for (int row = 0; row < grid.rows; ++row) visit(0, row), visit(grid.columns - 1, row);
   while (!todo.empty()) {
-    const auto [column, row] = todo.back();
+    const std::array<int, 2> cell = todo.back();
     todo.pop_back();
-    for (int dr = -1; dr <= 1; ++dr) {
-      for (int dc = -1; dc <= 1; ++dc) visit(column + dc, row + dr);
-    }
+    each_near(grid, cell, 1, visit);
   }
   return reached;
 }

@@ -23,23 +23,16 @@ const double unknown = std::numeric_limits<double>::quiet_NaN();
 
 using Hole = std::vector<Cell>;
 
-bool inside(const MapGrid& grid, int column, int row) {
-  return column >= 0 && row >= 0 && column < grid.columns && row < grid.rows;
-}
-
 /// The marked cells that hang together with one; they are unmarked.
 Hole take_hole(const MapGrid& grid, std::vector<char>& marked, Cell seed) {
   Hole hole{seed};
   marked[grid.index(seed[0], seed[1])] = 0;
   for (std::size_t i = 0; i < hole.size(); ++i) {
-    const auto [column, row] = hole[i];
-    for (int r = row - 1; r <= row + 1; ++r) {
-      for (int c = column - 1; c <= column + 1; ++c) {
-        if (!inside(grid, c, r) || !marked[grid.index(c, r)]) continue;
-        marked[grid.index(c, r)] = 0;
-        hole.push_back({c, r});
-      }
-    }
+    each_near(grid, Cell(hole[i]), 1, [&](int c, int r) {  // a copy: the hole grows
+      if (!marked[grid.index(c, r)]) return;
+      marked[grid.index(c, r)] = 0;
+      hole.push_back({c, r});
+    });
   }
   return hole;
 }
@@ -63,12 +56,10 @@ std::vector<Hole> holes_of(const Raster& raster) {
 /// Cells with data that touch the hole.
 Hole rim_of(const Raster& raster, const Hole& hole) {
   Hole rim;
-  for (const auto& [column, row] : hole) {
-    for (int r = row - 1; r <= row + 1; ++r) {
-      for (int c = column - 1; c <= column + 1; ++c) {
-        if (inside(raster.grid, c, r) && !std::isnan(raster.at(c, r))) rim.push_back({c, r});
-      }
-    }
+  for (const Cell& cell : hole) {
+    each_near(raster.grid, cell, 1, [&](int c, int r) {
+      if (!std::isnan(raster.at(c, r))) rim.push_back({c, r});
+    });
   }
   std::sort(rim.begin(), rim.end());
   rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
@@ -98,7 +89,7 @@ bool on_data(const Raster& raster, const Hole& hole) {
   return std::all_of(hole.begin(), hole.end(), [&](const Cell& cell) {
     for (int r = cell[1] - 1; r <= cell[1] + 1; ++r) {
       for (int c = cell[0] - 1; c <= cell[0] + 1; ++c) {
-        if (!inside(raster.grid, c, r) || std::isnan(raster.at(c, r))) return false;
+        if (!raster.grid.holds(c, r) || std::isnan(raster.at(c, r))) return false;
       }
     }
     return true;
