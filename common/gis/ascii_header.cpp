@@ -22,45 +22,28 @@ std::string lower(std::string_view text) {
 
 /// One name for each thing that a header says, by all the names it goes by.
 std::string_view meaning_of(const std::string& key) {
-  static const std::map<std::string, std::string_view, std::less<>> names{{"ncols", "columns"},
-                                                                          {"nbcols", "columns"},
-                                                                          {"ncolumns", "columns"},
-                                                                          {"nrows", "rows"},
-                                                                          {"nbrows", "rows"},
-                                                                          {"nlines", "rows"},
-                                                                          {"xllcorner", "west"},
-                                                                          {"xulcorner", "west"},
-                                                                          {"yllcorner", "south"},
-                                                                          {"yulcorner", "north"},
-                                                                          {"xllcenter", "first x"},
-                                                                          {"xllcentre", "first x"},
-                                                                          {"xulcenter", "first x"},
-                                                                          {"xulcentre", "first x"},
-                                                                          {"yllcenter", "lowest y"},
-                                                                          {"yllcentre", "lowest y"},
-                                                                          {"yulcenter", "highest y"},
-                                                                          {"yulcentre", "highest y"},
-                                                                          {"cellsize", "cell"},
-                                                                          {"dx", "dx"},
-                                                                          {"dy", "dy"},
-                                                                          {"xdim", "dx"},
-                                                                          {"ydim", "dy"},
-                                                                          {"nodata_value", "nodata"},
-                                                                          {"nodata", "nodata"},
-                                                                          {"no_data_value", "nodata"},
-                                                                          {"no_data", "nodata"},
-                                                                          {"nodatavalue", "nodata"},
-                                                                          {"missing_value", "nodata"},
-                                                                          {"missing", "nodata"}};
-  const auto found = names.find(key);
-  return found == names.end() ? std::string_view{} : found->second;
+  static constexpr std::pair<std::string_view, std::string_view> names[] = {
+      {"columns", " ncols nbcols ncolumns "},
+      {"rows", " nrows nbrows nlines "},
+      {"west", " xllcorner xulcorner "},
+      {"south", " yllcorner "},
+      {"north", " yulcorner "},
+      {"first x", " xllcenter xllcentre xulcenter xulcentre "},
+      {"lowest y", " yllcenter yllcentre "},
+      {"highest y", " yulcenter yulcentre "},
+      {"cell", " cellsize "},
+      {"dx", " dx xdim "},
+      {"dy", " dy ydim "},
+      {"nodata", " nodata_value nodata no_data_value no_data nodatavalue missing_value missing "}};
+  for (const auto& [meaning, keys] : names)
+    if (keys.find(" " + key + " ") != std::string_view::npos) return meaning;
+  return {};
 }
 
 /// The keys that GDAL's driver itself knows.
 bool gdal_knows(const std::string& key) {
-  static const std::vector<std::string> keys{"ncols",     "nrows", "xllcorner", "yllcorner", "xllcenter",
-                                             "yllcenter", "dx",    "dy",        "cellsize",  "nodata_value"};
-  return std::find(keys.begin(), keys.end(), key) != keys.end();
+  constexpr std::string_view keys = " ncols nrows xllcorner yllcorner xllcenter yllcenter dx dy cellsize nodata_value ";
+  return keys.find(" " + key + " ") != std::string_view::npos;
 }
 
 std::vector<std::string> words_of(std::string_view line) {
