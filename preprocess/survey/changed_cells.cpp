@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "preprocess/survey/changed_cells.hpp"
+#include "preprocess/survey/patches.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,14 +29,8 @@ Raster marked_share(const MapGrid& grid, const std::vector<double>& marked) {
 }
 
 void leave_out(const Region& region, const MapGrid& grid, std::vector<char>& kept) {
-  const auto columns = static_cast<std::size_t>(grid.columns);
-  for (const std::size_t cell : region.cells) {
-    const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
-    for (int r = std::max(0, row - rim); r <= std::min(grid.rows - 1, row + rim); ++r) {
-      for (int c = std::max(0, column - rim); c <= std::min(grid.columns - 1, column + rim); ++c)
-        kept[grid.index(c, r)] = 0;
-    }
-  }
+  for (const std::size_t cell : region.cells)
+    each_near(grid, grid.cell_of(cell), rim, [&](int c, int r) { kept[grid.index(c, r)] = 0; });
 }
 
 }  // namespace

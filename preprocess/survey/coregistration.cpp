@@ -10,8 +10,6 @@
 #include "common/error.hpp"
 #include "common/gis/coordinates.hpp"
 #include "common/map/statistics.hpp"
-#include "preprocess/survey/changed_cells.hpp"
-#include "preprocess/survey/first_guess.hpp"
 #include "preprocess/survey/refined_shift.hpp"
 #include "preprocess/survey/shift_fit.hpp"
 
@@ -56,20 +54,18 @@ void refuse_feet(const std::vector<Patch>& patches, const Placement& placement,
   }
 }
 
-}  // namespace
-
-std::vector<double> stable_misfit(const std::vector<Patch>& patches, const Placement& placement) {
-  std::vector<double> all;
-  for (const Patch& p : patches) {
-    const std::vector<double> d = misfit(p, placement);
-    for (std::size_t i = 0; i < d.size(); ++i) {
-      if (p.stable[i] && !std::isnan(d[i])) all.push_back(d[i]);
-    }
+Residuals residuals_of(const std::vector<double>& values) {
+  Residuals r{talus::median(values), talus::nmad(values), 0, 0, values.size()};
+  std::vector<double> sizes;
+  double squares = 0;
+  for (const double v : values) {
+    sizes.push_back(std::abs(v));
+    squares += v * v;
   }
-  return all;
+  r.median_absolute = talus::median(sizes);
+  r.rmse = std::sqrt(squares / static_cast<double>(values.size()));
+  return r;
 }
-
-namespace {
 
 /// Cells without both surveys no longer count as stable.
 void leave_out_unshared(std::vector<Patch>& patches, const Placement& placement) {

@@ -8,7 +8,6 @@
 
 #include "common/map/polygon.hpp"
 #include "preprocess/survey/patches.hpp"
-#include "preprocess/survey/residuals.hpp"
 
 namespace talus::preprocess {
 
@@ -17,6 +16,12 @@ struct StableGround {
   double steepest = 45;             ///< [deg]; steeper cells are left out: a small shift changes them much
   double roughest = 3;              ///< left out where rougher than the median by so many NMAD
   std::vector<MapPolygon> outside;  ///< the slide and all else that changed
+};
+
+/// How residuals are spread [m].
+struct Residuals {
+  double median = 0, nmad = 0, rmse = 0, median_absolute = 0;
+  std::size_t count = 0;
 };
 
 /// How the later survey lies on the earlier one, and how well that is known.
@@ -49,8 +54,5 @@ void find_stable(std::vector<Patch>& patches, const StableGround& limits);
 /// look like feet. Not known where fewer than least_cells are stable, or where changes take more than half of what is
 /// neither steep nor rough nor in a polygon.
 Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::filesystem::path& after_file);
-
-/// Residuals of the stable cells with the later survey at `placement`.
-std::vector<double> stable_misfit(const std::vector<Patch>& patches, const Placement& placement);
 
 }  // namespace talus::preprocess

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "preprocess/survey/first_guess.hpp"
+#include "preprocess/survey/patches.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -75,4 +75,15 @@ std::vector<double> misfit(const Patch& patch, const Placement& placement) {
   return difference;
 }
 
+std::vector<double> stable_misfit(const std::vector<Patch>& patches, const Placement& placement) {
+  std::vector<double> all;
+  for (const Patch& p : patches) {
+    const std::vector<double> d = misfit(p, placement);
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      if (p.stable[i] && !std::isnan(d[i])) all.push_back(d[i]);
+    }
+  }
+  return all;
+}
+
 }  // namespace talus::preprocess

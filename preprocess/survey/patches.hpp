@@ -30,4 +30,17 @@ std::vector<Patch> patches_of(const Elevation& before, const Elevation& after, c
 /// After less before on the cells of a patch, the later survey at `placement` [m]; NaN where either has no value.
 std::vector<double> misfit(const Patch& patch, const Placement& placement);
 
+/// The misfit of the stable cells of all patches, where it is known.
+std::vector<double> stable_misfit(const std::vector<Patch>& patches, const Placement& placement);
+
+/// Moves the placement by the whole-cell shift, at most 16 cells either way, at which the misfit of a thinned set of
+/// stable cells has the least NMAD; stays where no shift is a tenth better. A fit that starts there does not lose its
+/// way among hills narrower than the shift.
+void move_by_whole_cells(const std::vector<Patch>& patches, Placement& placement);
+
+/// Takes out of the stable and the unchanged ground what changed between the surveys: connected regions of 20 cells and
+/// more whose misfit stands out by more than three NMAD in most cells of their surroundings, and three cells around
+/// them.
+void leave_out_changed(std::vector<Patch>& patches, const Placement& placement);
+
 }  // namespace talus::preprocess

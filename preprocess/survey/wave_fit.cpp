@@ -46,13 +46,7 @@ double product(Wave a, Wave b) { return a.real() * b.real() + a.imag() * b.imag(
 }  // namespace
 
 WaveFit::WaveFit(const std::vector<Patch>& patches, const Placement& placement) : patches_(patches) {
-  std::vector<double> all;
-  for (const Patch& p : patches) {
-    const std::vector<double> d = misfit(p, placement);
-    for (std::size_t i = 0; i < d.size(); ++i) {
-      if (p.stable[i] && !std::isnan(d[i])) all.push_back(d[i]);
-    }
-  }
+  const std::vector<double> all = stable_misfit(patches, placement);
   const double centre = median(all), limit = biweight_cut * nmad(all);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     from_.push_back(p);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ground that changed is left out, wherever on the map it lies.
-#include "preprocess/survey/changed_cells.hpp"
+#include "preprocess/survey/patches.hpp"
 
 #include "tests/preprocess/terrain.hpp"
 
