@@ -26,5 +26,7 @@ class Sum {
 
 /// Rounded to a whole number, in groups of three: "36,003,420".
 std::string grouped(double value);
+/// A written number with `between` between its groups.
+std::string grouped(std::string number, const char* between);
 
 }  // namespace talus

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "common/map/sum.hpp"
 #include "postprocess/picture/search_words.hpp"
 
 namespace talus::postprocess {
@@ -22,12 +23,7 @@ constexpr Colour soft_ink{0.38, 0.40, 0.43};
 
 /// Thousands set apart by thin spaces: 361 200.
 std::string grouped(double value) {
-  auto text = fmt::format("{:.0f}", std::abs(value) < 0.5 ? 0.0 : value);
-  for (auto place = text.size(); place > (text[0] == '-' ? 4U : 3U);) {
-    place -= 3;
-    text.insert(place, "\u2009");
-  }
-  return text;
+  return talus::grouped(fmt::format("{:.0f}", std::abs(value) < 0.5 ? 0.0 : value), "\u2009");
 }
 
 struct FittedText {

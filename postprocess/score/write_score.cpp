@@ -10,29 +10,20 @@
 
 #include "postprocess/score/score.hpp"
 
+#include "common/map/sum.hpp"
+
 namespace talus::postprocess {
 namespace {
 
-/// 36001234.5 -> "36 001 235" with `decimals` places; thousands set apart by spaces, as in SI.
-std::string grouped(const std::string& plain) {
-  const auto digits_end = std::min(plain.find('.'), plain.size());
-  const std::size_t digits_begin = plain.starts_with('-') ? 1 : 0;
-  std::string text = plain;
-  for (auto place = digits_end; place > digits_begin + 3;) {
-    place -= 3;
-    text.insert(place, " ");
-  }
-  return text;
-}
-
+/// With thousands set apart by spaces, as in SI.
 std::string value_text(const ScoreEntry& entry) {
   if (const auto* text = std::get_if<std::string>(&entry.value)) return *text;
-  if (const auto* count = std::get_if<std::int64_t>(&entry.value)) return grouped(fmt::format("{}", *count));
+  if (const auto* count = std::get_if<std::int64_t>(&entry.value)) return grouped(fmt::format("{}", *count), " ");
   const double value = std::get<double>(entry.value);
   if (entry.decimals > 6) return fmt::format("{:.1e}", value);  // a closure error: its size matters, not its digits
   const auto plain = fmt::format("{:.{}f}", value, entry.decimals);
   const bool rounds_to_zero = plain.find_first_not_of("-0.") == std::string::npos;
-  return grouped(rounds_to_zero ? fmt::format("{:.{}f}", 0.0, entry.decimals) : plain);
+  return grouped(rounds_to_zero ? fmt::format("{:.{}f}", 0.0, entry.decimals) : plain, " ");
 }
 
 bool is_text(const ScoreEntry& entry) { return std::holds_alternative<std::string>(entry.value); }
