@@ -16,6 +16,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
+#include "preprocess/scene/bed_zones.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {
@@ -89,14 +90,6 @@ double to_mean(std::string_view number, double value) {
 double from_mean(std::string_view number, double value) {
   if (is_angle(number)) return std::atan(value) * 180 / std::numbers::pi;
   return number == "turbulence_m_s2" ? 1 / value : value;
-}
-
-Raster& raster_named(std::vector<std::pair<std::string, Raster>>& bed, std::string_view name, const MapGrid& grid) {
-  for (auto& [other, raster] : bed) {
-    if (other == name) return raster;
-  }
-  bed.emplace_back(name, Raster{grid, std::vector<double>(grid.count(), nan)});
-  return bed.back().second;
 }
 
 /// A polygon's value of a number, with the part of every cell that it covers.

@@ -38,15 +38,6 @@ std::vector<double> shares_of(const BedZone& zone, const Raster& ground) {
   return share;
 }
 
-/// The raster of a number, made without values where there is none yet.
-Raster& raster_of(std::vector<std::pair<std::string, Raster>>& bed, const std::string& name, const MapGrid& grid) {
-  for (auto& [other, raster] : bed) {
-    if (other == name) return raster;
-  }
-  bed.emplace_back(name, Raster{grid, std::vector<double>(grid.count(), std::numeric_limits<double>::quiet_NaN())});
-  return bed.back().second;
-}
-
 /// The mean of what was there and what comes, by the share that the new one has; of what is not known the larger share
 /// decides.
 double mixed(double before, double after, double share) {
@@ -81,6 +72,14 @@ void lay_turbulence(double xi, const std::vector<double>& share, Raster& turbule
 
 }  // namespace
 
+Raster& raster_named(std::vector<std::pair<std::string, Raster>>& bed, std::string_view name, const MapGrid& grid) {
+  for (auto& [other, raster] : bed) {
+    if (other == name) return raster;
+  }
+  bed.emplace_back(name, Raster{grid, std::vector<double>(grid.count(), nan)});
+  return bed.back().second;
+}
+
 void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
                    std::vector<std::pair<std::string, Raster>>& bed) {
   for (std::size_t z = 0; z < zones.size(); ++z) {
@@ -94,8 +93,8 @@ void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
     else
       log_info(fmt::format("{}: {:.0f} m2", place, cells * ground.grid.cell * ground.grid.cell));
     if (zone.friction_coefficient || zone.added_coefficient)
-      lay_coefficient(zone, place, share, raster_of(bed, "friction_angle_deg", ground.grid));
-    if (zone.turbulence) lay_turbulence(*zone.turbulence, share, raster_of(bed, "turbulence_m_s2", ground.grid));
+      lay_coefficient(zone, place, share, raster_named(bed, "friction_angle_deg", ground.grid));
+    if (zone.turbulence) lay_turbulence(*zone.turbulence, share, raster_named(bed, "turbulence_m_s2", ground.grid));
   }
 }
 

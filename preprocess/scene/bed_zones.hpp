@@ -19,4 +19,7 @@ namespace talus::preprocess {
 void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
                    std::vector<std::pair<std::string, Raster>>& bed);
 
+/// The raster of a number of the bed, made without values where there is none yet.
+Raster& raster_named(std::vector<std::pair<std::string, Raster>>& bed, std::string_view name, const MapGrid& grid);
+
 }  // namespace talus::preprocess
