@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/map/crop.hpp"
+
 namespace talus::postprocess {
 namespace {
 
@@ -70,19 +72,12 @@ RunMaps cropped(const RunMaps& maps, const Window& window) {
             last = cell_of(window.east - grid.west + 2 * grid.cell, grid.columns);
   const int bottom = cell_of(window.south - grid.south - 2 * grid.cell, grid.rows),
             top = cell_of(window.north - grid.south + 2 * grid.cell, grid.rows);
+  const CellWindow cells{first, bottom, last - first + 1, top - bottom + 1};
   RunMaps part;
-  part.grid = grid;
-  part.grid.columns = last - first + 1;
-  part.grid.rows = top - bottom + 1;
-  part.grid.west = grid.west + first * grid.cell;
-  part.grid.south = grid.south + bottom * grid.cell;
+  part.grid = cut(grid, cells);
   for (const auto field :
-       {&RunMaps::before, &RunMaps::initial_thickness, &RunMaps::deposit_thickness, &RunMaps::peak_thickness}) {
-    for (int row = bottom; row <= top; ++row) {
-      const auto start = (maps.*field).begin() + static_cast<std::ptrdiff_t>(grid.index(first, row));
-      (part.*field).insert((part.*field).end(), start, start + part.grid.columns);
-    }
-  }
+       {&RunMaps::before, &RunMaps::initial_thickness, &RunMaps::deposit_thickness, &RunMaps::peak_thickness})
+    part.*field = cut(Raster{grid, maps.*field}, cells).values;
   return part;
 }
 

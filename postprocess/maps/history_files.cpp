@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/stage/identity.hpp"
-#include "postprocess/maps/nc_file.hpp"
+#include "postprocess/maps/nc_grid.hpp"
 #include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
@@ -125,13 +125,7 @@ std::string history_netcdf(const Run& run, const std::string& start) {
   std::vector<std::pair<int, const HistoryColumn*>> variables;
   if (time != nullptr && !time->values.empty()) {
     const int dimension = nc.dimension("time", time->values.size());
-    const int axis = nc.variable("time", NC_DOUBLE, {dimension});
-    nc.text(axis, "standard_name", "time");
-    nc.text(axis, "long_name", "time since the start of the failure");
-    nc.text(axis, "units", "seconds since " + (start.empty() ? "1970-01-01 00:00:00" : start));
-    nc.text(axis, "calendar", "standard");
-    nc.text(axis, "axis", "T");
-    variables.emplace_back(axis, time);
+    variables.emplace_back(define_time(nc, dimension, start), time);
     std::vector<std::string> taken{"time"};
     for (const HistoryColumn& column : run.history.columns) {
       if (&column == time) continue;

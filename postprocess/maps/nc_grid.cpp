@@ -8,6 +8,7 @@
 
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/cf_projection.hpp"
+#include "postprocess/maps/netcdf.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -52,6 +53,16 @@ void define_crs(Nc& nc, const MapGrid& grid) {
   nc.text(id, "crs_wkt", grid.crs_wkt);
   nc.text(id, "spatial_ref", grid.crs_wkt);  // GDAL's name for it
   nc.text(id, "GeoTransform", fmt::format("{} {} 0 {} 0 {}", grid.west, grid.cell, grid.north(), -grid.cell));
+}
+
+int define_time(Nc& nc, int dimension, const std::string& start) {
+  const int id = nc.variable("time", NC_DOUBLE, {dimension});
+  nc.text(id, "standard_name", "time");
+  nc.text(id, "long_name", "time since the start of the failure");
+  nc.text(id, "units", "seconds since " + (start.empty() ? std::string(nominal_start) : start));
+  nc.text(id, "calendar", "standard");
+  nc.text(id, "axis", "T");
+  return id;
 }
 
 void fill_axes(Nc& nc, const NcAxes& axes, const MapGrid& grid) {

@@ -23,6 +23,9 @@ NcAxes define_axes(Nc& nc, const MapGrid& grid);
 /// Defines the variable crs, by the names of CF and those of GDAL.
 void define_crs(Nc& nc, const MapGrid& grid);
 
+/// Defines the variable time, in seconds since `start`; empty: not known, a nominal date stands for it.
+int define_time(Nc& nc, int dimension, const std::string& start);
+
 /// Writes coordinates and bounds.
 void fill_axes(Nc& nc, const NcAxes& axes, const MapGrid& grid);
 

@@ -30,8 +30,10 @@ std::string name_of(const NcRecord::Place& place) {
   return place.group.empty() ? "the file" : place.group;
 }
 
+}  // namespace
+
 /// A file in memory, opened to be read.
-class Opened {
+class NcRecord::Opened {
  public:
   explicit Opened(const std::string& bytes) {
     // The library does not write to what it opens for reading.
@@ -92,35 +94,36 @@ class Opened {
   int root_ = -1;
 };
 
-}  // namespace
-
-void NcRecord::values(const Place& place, std::vector<std::size_t> start, std::vector<std::size_t> count,
+void NcRecord::values(const Place& place, const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
                       std::span<const double> values) {
-  blocks_.push_back({place, std::move(start), std::move(count), digest_of(values)});
+  checks_.emplace_back([place, start, count, digest = digest_of(values)](const Opened& file) {
+    return file.digest(place, start, count) == digest ? "" : "the values of " + name_of(place);
+  });
 }
 
-void NcRecord::texts(const Place& place, const std::vector<std::string>& texts) { texts_.push_back({place, texts}); }
+void NcRecord::texts(const Place& place, const std::vector<std::string>& texts) {
+  checks_.emplace_back([place, texts](const Opened& file) {
+    return file.holds_texts(place, texts) ? "" : "the texts of " + name_of(place);
+  });
+}
 
 void NcRecord::text(const Place& place, const std::string& name, const std::string& value) {
-  text_attributes_.push_back({place, name, value});
+  checks_.emplace_back([place, name, value](const Opened& file) {
+    return file.holds_text(place, name, value) ? "" : fmt::format("{} of {}", name, name_of(place));
+  });
 }
 
-void NcRecord::numbers(const Place& place, const std::string& name, std::vector<double> values) {
-  number_attributes_.push_back({place, name, std::move(values)});
+void NcRecord::numbers(const Place& place, const std::string& name, const std::vector<double>& values) {
+  checks_.emplace_back([place, name, values](const Opened& file) {
+    return file.holds_numbers(place, name, values) ? "" : fmt::format("{} of {}", name, name_of(place));
+  });
 }
 
 std::string NcRecord::difference(const std::string& bytes) const {
   const Opened file(bytes);
   if (!file.open()) return "it does not open";
-  for (const Block& block : blocks_)
-    if (file.digest(block.place, block.start, block.count) != block.digest)
-      return "the values of " + name_of(block.place);
-  for (const Texts& t : texts_)
-    if (!file.holds_texts(t.place, t.texts)) return "the texts of " + name_of(t.place);
-  for (const TextAttribute& a : text_attributes_)
-    if (!file.holds_text(a.place, a.name, a.value)) return fmt::format("{} of {}", a.name, name_of(a.place));
-  for (const NumberAttribute& a : number_attributes_)
-    if (!file.holds_numbers(a.place, a.name, a.values)) return fmt::format("{} of {}", a.name, name_of(a.place));
+  for (const Check& check : checks_)
+    if (std::string words = check(file); !words.empty()) return words;
   return {};
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,43 +22,25 @@ class NcRecord {
   };
 
   /// The values of a block of a variable, from `start` on, `count` along each dimension; both empty: a single value.
-  void values(const Place& place, std::vector<std::size_t> start, std::vector<std::size_t> count,
+  void values(const Place& place, const std::vector<std::size_t>& start, const std::vector<std::size_t>& count,
               std::span<const double> values);
   /// The texts of a variable of one dimension.
   void texts(const Place& place, const std::vector<std::string>& texts);
   /// An attribute that is text.
   void text(const Place& place, const std::string& name, const std::string& value);
   /// An attribute that is a list of numbers, whole ones too.
-  void numbers(const Place& place, const std::string& name, std::vector<double> values);
+  void numbers(const Place& place, const std::string& name, const std::vector<double>& values);
 
   /// The first thing that a file of these bytes has kept otherwise than it was given, for a message; empty where there
   /// is none. The file is read as other programs read it.
   std::string difference(const std::string& bytes) const;
 
  private:
-  struct Block {
-    Place place;
-    std::vector<std::size_t> start, count;
-    std::string digest;  ///< of the numbers' bytes
-  };
-  struct Texts {
-    Place place;
-    std::vector<std::string> texts;
-  };
-  struct TextAttribute {
-    Place place;
-    std::string name, value;
-  };
-  struct NumberAttribute {
-    Place place;
-    std::string name;
-    std::vector<double> values;
-  };
+  class Opened;
+  /// What is said of a difference; empty where there is none.
+  using Check = std::function<std::string(const Opened&)>;
 
-  std::vector<Block> blocks_;
-  std::vector<Texts> texts_;
-  std::vector<TextAttribute> text_attributes_;
-  std::vector<NumberAttribute> number_attributes_;
+  std::vector<Check> checks_;
 };
 
 }  // namespace talus::postprocess

@@ -81,17 +81,6 @@ int define_map(Nc& nc, const MapVariable& map, const std::vector<int>& dimension
   return id;
 }
 
-int define_time(Nc& nc, int dimension, const std::string& start) {
-  const int id = nc.variable("time", NC_DOUBLE, {dimension});
-  nc.text(id, "standard_name", "time");
-  nc.text(id, "long_name", "time since the start of the failure");
-  nc.text(id, "units", "seconds since " + (start.empty() ? std::string(nominal_start) : start));
-  nc.text(id, "calendar", "standard");
-  nc.text(id, "axis", "T");
-  if (start.empty()) nc.text(id, "comment", "the date is nominal: the run does not say when the failure began");
-  return id;
-}
-
 /// The variables of one file, defined first and filled afterwards.
 struct Layout {
   NcAxes axes;
@@ -112,6 +101,8 @@ Layout define(Nc& nc, const Run& run, const NetcdfNotes& notes) {
   for (const auto& map : layout.maps) layout.ids.push_back(define_map(nc, map, {y, x}, grid));
   if (!has_frames) return layout;
   layout.time = define_time(nc, time, notes.start);
+  if (notes.start.empty())
+    nc.text(layout.time, "comment", "the date is nominal: the run does not say when the failure began");
   const MapVariable thickness{"thickness", "thickness, vertical", "m", "area: mean time: point", nullptr, true};
   layout.thickness = define_map(nc, thickness, {time, y, x}, grid);
   return layout;
