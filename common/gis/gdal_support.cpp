@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/gis/gdal_support.hpp"
 
+#include "common/gis/geotiff.hpp"
 #include "common/gis/local_only.hpp"
 
 #include <cpl_conv.h>
@@ -146,7 +147,23 @@ std::string utm_zone(const OGRSpatialReference& srs, double x, double y) {
   return fmt::format("EPSG:{}", (y < 0 ? 32700 : 32600) + zone);
 }
 
-Dataset in_memory(const Raster& raster, double nodata) {
+void place(GDALDataset& dataset, const MapGrid& grid) {
+  std::array<double, 6> corner{grid.west, grid.cell, 0, grid.north(), 0, -grid.cell};
+  dataset.SetGeoTransform(corner.data());
+  if (grid.crs_wkt.empty()) return;
+  const OGRSpatialReference srs = spatial_reference(grid.crs_wkt);
+  dataset.SetSpatialRef(&srs);
+}
+
+void describe(GDALDataset& dataset, const RasterTags& tags) {
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  band.SetDescription(tags.description.c_str());
+  band.SetUnitType(tags.unit.c_str());
+  dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+  for (const auto& [name, value] : tags.metadata) dataset.SetMetadataItem(name.c_str(), value.c_str());
+}
+
+Dataset in_memory(const Raster& raster, double missing) {
   const QuietErrors errors;
   const MapGrid& grid = raster.grid;
   auto* driver = GetGDALDriverManager()->GetDriverByName("MEM");
@@ -154,19 +171,14 @@ Dataset in_memory(const Raster& raster, double nodata) {
   if (!dataset)
     throw DataError(
         {fmt::format("a raster of {} x {} cells", grid.columns, grid.rows), errors.text(), "Take a larger spacing"});
-  std::array<double, 6> corner{grid.west, grid.cell, 0, grid.north(), 0, -grid.cell};
-  dataset->SetGeoTransform(corner.data());
-  if (!grid.crs_wkt.empty()) {
-    const OGRSpatialReference srs = spatial_reference(grid.crs_wkt);
-    dataset->SetSpatialRef(&srs);
-  }
+  place(*dataset, grid);
   auto* band = dataset->GetRasterBand(1);
-  band->SetNoDataValue(nodata);
+  band->SetNoDataValue(missing);
   std::vector<double> line(static_cast<std::size_t>(grid.columns));
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const double value = raster.at(column, row);
-      line[static_cast<std::size_t>(column)] = std::isnan(value) ? nodata : value;
+      line[static_cast<std::size_t>(column)] = std::isnan(value) ? missing : value;
     }
     const int line_from_north = grid.rows - 1 - row;
     if (band->RasterIO(GF_Write, 0, line_from_north, grid.columns, 1, line.data(), grid.columns, 1, GDT_Float64, 0, 0,

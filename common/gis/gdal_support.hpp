@@ -17,6 +17,10 @@
 #include "common/error.hpp"
 #include "common/map/raster.hpp"
 
+namespace talus {
+struct RasterTags;  // of geotiff.hpp
+}  // namespace talus
+
 namespace talus::gdal {
 
 /// Starts GDAL on first use, and while it lives keeps GDAL's errors off stderr and collects them instead.
@@ -68,7 +72,13 @@ Transformation transformation(const OGRSpatialReference& from, const OGRSpatialR
 /// "EPSG:32611", the UTM zone of a point given in `srs`; "EPSG:<a metric one>" when it cannot be told.
 std::string utm_zone(const OGRSpatialReference& srs, double x, double y);
 
-/// The raster as a GDAL dataset in memory: Float64, north first, NaN as `nodata`.
-Dataset in_memory(const Raster& raster, double nodata);
+/// Gives a dataset the place and the CRS of a grid.
+void place(GDALDataset& dataset, const MapGrid& grid);
+
+/// Gives a dataset of one band its description, its unit and its metadata.
+void describe(GDALDataset& dataset, const RasterTags& tags);
+
+/// The raster as a GDAL dataset in memory: Float64, north first, NaN as `missing`.
+Dataset in_memory(const Raster& raster, double missing);
 
 }  // namespace talus::gdal

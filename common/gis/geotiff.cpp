@@ -17,16 +17,6 @@ namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
-gdal::Dataset tagged(const Raster& raster, const RasterTags& tags) {
-  gdal::Dataset dataset = gdal::in_memory(raster, nodata);
-  auto* band = dataset->GetRasterBand(1);
-  band->SetDescription(tags.description.c_str());
-  band->SetUnitType(tags.unit.c_str());
-  dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
-  for (const auto& [name, value] : tags.metadata) dataset->SetMetadataItem(name.c_str(), value.c_str());
-  return dataset;
-}
-
 /// True when the file holds the very bytes of `expected`. A full disk or a lost mount shows here at the latest.
 bool reads_back(const fs::path& written, GDALDataset& expected) {
   const gdal::Dataset dataset(GDALDataset::Open(written.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
@@ -48,7 +38,8 @@ void write(const fs::path& file, const Raster& raster, const RasterTags& tags, c
            const CPLStringList& options) {
   PendingFile pending(file);
   const gdal::QuietErrors errors;
-  const gdal::Dataset source = tagged(raster, tags);
+  const gdal::Dataset source = gdal::in_memory(raster, nodata);
+  gdal::describe(*source, tags);
   auto* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
   if (driver == nullptr)
     throw DataError({file.string() + ": cannot be written", std::string("this GDAL has no ") + driver_name + " driver",

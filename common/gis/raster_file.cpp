@@ -14,6 +14,7 @@
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/grid_limits.hpp"
 #include "common/gis/raster_source.hpp"
+#include "common/map/crop.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
@@ -147,11 +148,7 @@ double RasterFile::step() const { return parts_->source.step(); }
 Raster RasterFile::read(const CellWindow& w) const {
   const MapGrid& whole = parts_->grid;
   refuse_outside(whole, w);
-  Raster raster{whole, {}};
-  raster.grid.west = whole.west + w.column * whole.cell;
-  raster.grid.south = whole.south + w.row * whole.cell;
-  raster.grid.columns = w.columns;
-  raster.grid.rows = w.rows;
+  Raster raster{cut(whole, w), {}};
   require_room(w.columns, w.rows, sizeof(double), file().string(),
                "Crop it (gdal_translate -projwin), take larger cells (gdalwarp -tr), or give the working grid bounds "
                "(extent_m in [preprocess.grid])");

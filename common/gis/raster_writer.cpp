@@ -71,18 +71,9 @@ RasterWriter::RasterWriter(const std::filesystem::path& file, const MapGrid& gri
   open_->dataset.reset(driver->Create(open_->pending.path().c_str(), grid.columns, grid.rows, 1, GDT_Float32,
                                       const_cast<char**>(options.List())));
   if (!open_->dataset) open_->fail(errors);
-  std::array<double, 6> corner{grid.west, grid.cell, 0, grid.north(), 0, -grid.cell};
-  open_->dataset->SetGeoTransform(corner.data());
-  if (!grid.crs_wkt.empty()) {
-    const OGRSpatialReference srs = gdal::spatial_reference(grid.crs_wkt);
-    open_->dataset->SetSpatialRef(&srs);
-  }
-  auto* band = open_->dataset->GetRasterBand(1);
-  band->SetNoDataValue(nodata);
-  band->SetDescription(tags.description.c_str());
-  band->SetUnitType(tags.unit.c_str());
-  open_->dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
-  for (const auto& [name, value] : tags.metadata) set_item(name, value);
+  gdal::place(*open_->dataset, grid);
+  open_->dataset->GetRasterBand(1)->SetNoDataValue(nodata);
+  gdal::describe(*open_->dataset, tags);
   if (tiles == Tiles::sparse) open_->make_room(errors);
 }
 

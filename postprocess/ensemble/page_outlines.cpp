@@ -34,21 +34,6 @@ std::vector<int> corners(const Polyline& line, const MapGrid& grid) {
   return points;
 }
 
-Json line_of(const Polyline& line, const Window& window) {
-  auto list = Json::array();
-  for (const auto& [x, y] : line) {
-    list.push_back(std::round(10 * (x - window.west)) / 10);
-    list.push_back(std::round(10 * (y - window.south)) / 10);
-  }
-  return list;
-}
-
-Json lines_of(const std::vector<Polyline>& lines, const Window& window) {
-  auto list = Json::array();
-  for (const Polyline& line : lines) list.push_back(line_of(line, window));
-  return list;
-}
-
 /// Outlines of a member's footprint in half cells from the corner of `shown`. Of an ensemble the part that the window
 /// shows is traced; of slides, whose domains are small, the whole.
 std::vector<std::vector<int>> outlines_of(const Footprint& footprint, const MapGrid& grid, const Window* window,
@@ -132,11 +117,11 @@ Json ensemble_outlines_json(const EnsemblePageInput& input, const Window& window
   }
   if (!input.ensemble.table.slides)
     json["release"] =
-        lines_of(isolines(grid, counts.scene.release_thickness, counts.scene.threshold, AtEdge::close), window);
+        lines_json(isolines(grid, counts.scene.release_thickness, counts.scene.threshold, AtEdge::close), window);
   if (input.survey && !input.survey->polygons.empty())
-    json["survey"] = lines_of(rings(input.survey->polygons), window);
+    json["survey"] = lines_json(rings(input.survey->polygons), window);
   else if (input.survey && !input.survey->footprint.empty())
-    json["survey"] = lines_of(
+    json["survey"] = lines_json(
         isolines(input.survey->grid, input.survey->footprint, input.survey->footprint_threshold, AtEdge::close),
         window);
   return json;

@@ -15,6 +15,9 @@ struct ReleaseNumbers {
   double thickest_normal = 0;      ///< t cos s [m]
 };
 
+/// The numbers of a thickness map on ground of slopes with these cosines; areas are of cells thicker than `limit` [m].
+ReleaseNumbers numbers_of(const Raster& thickness, const std::vector<double>& cosine, double limit);
+
 /// As talus-preprocess measured it on the release itself, and the run carries on. In a run that does not (an older
 /// one): from the map of the thickness at the start, which is spread by the grid's shape functions, over cells thicker
 /// than `limit` [m].

@@ -6,26 +6,11 @@
 #include "common/map/isolines.hpp"
 #include "postprocess/hazard/hazard.hpp"
 #include "postprocess/picture/layers.hpp"
+#include "postprocess/report/pack.hpp"
 #include "postprocess/report/parts.hpp"
 
 namespace talus::postprocess {
 namespace {
-
-/// A flat list x, y, x, y ... [m] from the window's corner, to a decimetre.
-Json line_json(const Polyline& line, const Window& window) {
-  auto list = Json::array();
-  for (const auto& [x, y] : line) {
-    list.push_back(std::round(10 * (x - window.west)) / 10);
-    list.push_back(std::round(10 * (y - window.south)) / 10);
-  }
-  return list;
-}
-
-Json lines_json(const std::vector<Polyline>& lines, const Window& window) {
-  auto list = Json::array();
-  for (const auto& line : lines) list.push_back(line_json(line, window));
-  return list;
-}
 
 /// Outline of what exceeds `level` on a grid of its own.
 Json outline(const MapGrid& grid, const std::vector<double>& values, double level, const Window& window) {

@@ -9,6 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "common/map/crop.hpp"
+
 namespace talus::postprocess {
 namespace {
 
@@ -55,17 +57,7 @@ Raster cut(const Raster& raster, const Window& window) {
             last = cell_of(window.east - grid.west, grid.columns, -slack);
   const int bottom = cell_of(window.south - grid.south, grid.rows, slack),
             top = cell_of(window.north - grid.south, grid.rows, -slack);
-  Raster part{grid, {}};
-  part.grid.columns = last - first + 1;
-  part.grid.rows = top - bottom + 1;
-  part.grid.west = grid.west + first * grid.cell;
-  part.grid.south = grid.south + bottom * grid.cell;
-  part.values.reserve(part.grid.count());
-  for (int row = bottom; row <= top; ++row) {
-    const auto start = raster.values.begin() + static_cast<std::ptrdiff_t>(grid.index(first, row));
-    part.values.insert(part.values.end(), start, start + part.grid.columns);
-  }
-  return part;
+  return cut(raster, CellWindow{first, bottom, last - first + 1, top - bottom + 1});
 }
 
 Raster coarsened(const Raster& raster, int factor, MergedCells merge) {
@@ -127,6 +119,21 @@ nlohmann::ordered_json packed(const std::vector<double>& values) {
 nlohmann::ordered_json grid_json(const MapGrid& grid) {
   return {
       {"columns", grid.columns}, {"rows", grid.rows}, {"west", grid.west}, {"south", grid.south}, {"cell", grid.cell}};
+}
+
+nlohmann::ordered_json line_json(const Polyline& line, const Window& window) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& [x, y] : line) {
+    list.push_back(std::round(10 * (x - window.west)) / 10);
+    list.push_back(std::round(10 * (y - window.south)) / 10);
+  }
+  return list;
+}
+
+nlohmann::ordered_json lines_json(const std::vector<Polyline>& lines, const Window& window) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& line : lines) list.push_back(line_json(line, window));
+  return list;
 }
 
 std::string base64(const std::string& bytes) {

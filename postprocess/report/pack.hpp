@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/map/isolines.hpp"
 #include "common/map/raster.hpp"
 #include "common/run/map_fields.hpp"
 #include "postprocess/fields/window.hpp"
@@ -34,6 +35,11 @@ nlohmann::ordered_json packed(const std::vector<std::vector<double>>& frames);
 
 /// Columns, rows, west, south and cell [m] of a grid.
 nlohmann::ordered_json grid_json(const MapGrid& grid);
+
+/// A line as a flat list x, y, x, y ... [m] from the window's corner, to a decimetre.
+nlohmann::ordered_json line_json(const Polyline& line, const Window& window);
+/// Several lines, a list each.
+nlohmann::ordered_json lines_json(const std::vector<Polyline>& lines, const Window& window);
 
 /// RFC 4648, with padding.
 std::string base64(const std::string& bytes);

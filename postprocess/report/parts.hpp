@@ -37,8 +37,6 @@ Json profile_json(const ReportInput& input);
 /// along the thalweg, the volume in motion.
 Json series_json(const ReportInput& input);
 
-/// How far other runs differ from this one; null where none was made.
-
 /// What came to each building.
 Json hazard_json(const ReportInput& input);
 /// Gauges and obstacles: name, kind, rings [m from the window's west and south] and the largest of what was measured.

@@ -21,26 +21,17 @@ Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : 
 
 /// A thickness map read both ways. Vertical is how Talus means it; the other column is what the same numbers would be,
 /// were they measured normal to the slope.
-Json both_ways(const std::string& name, const Raster& thickness, const std::vector<double>& cosine, double limit) {
-  double vertical = 0, normal = 0, projected = 0, true_area = 0, thickest = 0, thickest_normal = 0;
-  const double cell = thickness.grid.cell * thickness.grid.cell;
-  for (std::size_t i = 0; i < thickness.values.size(); ++i) {
-    const double h = thickness.values[i];
-    if (!(h > 0)) continue;
-    vertical += h * cell;
-    normal += h * cell / cosine[i];
-    if (h > limit) projected += cell;
-    if (h > limit) true_area += cell / cosine[i];
-    thickest = std::max(thickest, h);
-    thickest_normal = std::max(thickest_normal, h * cosine[i]);
-  }
+Json both_ways(const std::string& name, const Raster& thickness, const ReleaseNumbers& numbers, double limit) {
+  double vertical = 0;
+  for (const double h : thickness.values)
+    if (h > 0) vertical += h * (thickness.grid.cell * thickness.grid.cell);
   return {{"name", name},
           {"volume", vertical},
-          {"volume_if_normal", normal},
-          {"area_projected", projected},
-          {"area_true", true_area},
-          {"thickest", thickest},
-          {"thickest_normal", thickest_normal},
+          {"volume_if_normal", numbers.volume_if_normal},
+          {"area_projected", numbers.area},
+          {"area_true", numbers.true_area},
+          {"thickest", numbers.thickest},
+          {"thickest_normal", numbers.thickest_normal},
           {"limit", limit}};
 }
 
@@ -71,17 +62,12 @@ Json volumes_json(const Run& run, double deposit_threshold) {
   const auto& maps = run.maps;
   auto bodies = Json::array();
   const double limit = release_limit(maps, deposit_threshold);
-  const ReleaseNumbers release = release_numbers(run, limit);
-  Json released = both_ways("Release", {maps.grid, maps.initial_thickness}, cosine, limit);
-  released["volume_if_normal"] = release.volume_if_normal;
-  released["area_projected"] = release.area;
-  released["area_true"] = release.true_area;
-  released["thickest"] = release.thickest;
-  released["thickest_normal"] = release.thickest_normal;
-  bodies.push_back(std::move(released));
-  bodies.push_back(both_ways("Deposit", {maps.grid, maps.deposit_thickness}, cosine, deposit_threshold));
-  if (!maps.eroded_depth.empty())
-    bodies.push_back(both_ways("Eroded ground", {maps.grid, maps.eroded_depth}, cosine, 0));
+  bodies.push_back(both_ways("Release", {maps.grid, maps.initial_thickness}, release_numbers(run, limit), limit));
+  const auto add = [&](const char* name, const Raster& thickness, double least) {
+    bodies.push_back(both_ways(name, thickness, numbers_of(thickness, cosine, least), least));
+  };
+  add("Deposit", {maps.grid, maps.deposit_thickness}, deposit_threshold);
+  if (!maps.eroded_depth.empty()) add("Eroded ground", {maps.grid, maps.eroded_depth}, 0);
   return bodies;
 }
 
