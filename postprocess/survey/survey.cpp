@@ -15,7 +15,6 @@
 #include "common/gis/read_raster.hpp"
 #include "common/gis/resampling.hpp"
 #include "common/map/cells_inside.hpp"
-#include "postprocess/survey/survey_error.hpp"
 #include "postprocess/survey/survey_grid.hpp"
 
 namespace talus::postprocess {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/survey/survey_error.hpp"
+#include "postprocess/survey/survey_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,6 @@
 #include "common/gis/read_raster.hpp"
 #include "common/gis/resampling.hpp"
 #include "common/stage/findings.hpp"
-#include "postprocess/survey/survey_grid.hpp"
 
 namespace talus::postprocess {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "preprocess/scene/bed_polygons.hpp"
+#include "preprocess/scene/bed_zones.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,6 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
-#include "preprocess/scene/bed_zones.hpp"
 #include "preprocess/terrain/surfaces.hpp"
 
 namespace talus::preprocess {

@@ -22,7 +22,6 @@
 #include "preprocess/particles/coarseness.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/release/releases.hpp"
-#include "preprocess/scene/bed_polygons.hpp"
 #include "preprocess/scene/bed_zones.hpp"
 #include "preprocess/scene/places.hpp"
 #include "preprocess/terrain/elevation.hpp"

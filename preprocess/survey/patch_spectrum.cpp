@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "common/map/fourier.hpp"
-#include "preprocess/survey/smooth_fill.hpp"
 
 namespace talus::preprocess {
 

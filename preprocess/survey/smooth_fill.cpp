@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "preprocess/survey/smooth_fill.hpp"
+#include "preprocess/survey/patch_spectrum.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bed's numbers as attributes of polygons.
-#include "preprocess/scene/bed_polygons.hpp"
+#include "preprocess/scene/bed_zones.hpp"
 
 #include <cmath>
 #include <fstream>

@@ -11,7 +11,7 @@
 #include "common/map/biquintic.hpp"
 #include "common/map/fourier.hpp"
 #include "preprocess/survey/coregistration.hpp"
-#include "preprocess/survey/smooth_fill.hpp"
+#include "preprocess/survey/patch_spectrum.hpp"
 #include "preprocess/survey/survey.hpp"
 #include "preprocess/survey/survey_json.hpp"
 #include "tests/places.hpp"
