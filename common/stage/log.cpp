@@ -32,6 +32,10 @@ const char* prefix_of(LogLevel level) {
   }
 }
 
+void log_unless_kept_back(LogLevel level, const std::string& text) {
+  if (!log_is_kept_back()) context().log(level, text);
+}
+
 }  // namespace
 
 void write_to_stderr(LogLevel level, const std::string& text) {
@@ -43,22 +47,10 @@ void set_verbosity(Verbosity verbosity) { context().verbosity = verbosity; }
 
 Verbosity verbosity() { return context().verbosity; }
 
-void log_info(const std::string& text) {
-  if (!log_is_kept_back()) context().log(LogLevel::info, text);
-}
-
-void log_advice(const std::string& text) {
-  if (!log_is_kept_back()) context().log(LogLevel::advice, text);
-}
-
-void log_warning(const std::string& text) {
-  if (!log_is_kept_back()) context().log(LogLevel::warning, text);
-}
-
-void log_detail(const std::string& text) {
-  if (!log_is_kept_back()) context().log(LogLevel::detail, text);
-}
-
+void log_info(const std::string& text) { log_unless_kept_back(LogLevel::info, text); }
+void log_advice(const std::string& text) { log_unless_kept_back(LogLevel::advice, text); }
+void log_warning(const std::string& text) { log_unless_kept_back(LogLevel::warning, text); }
+void log_detail(const std::string& text) { log_unless_kept_back(LogLevel::detail, text); }
 void log_error(const std::string& text) { context().log(LogLevel::error, text); }
 
 }  // namespace talus
