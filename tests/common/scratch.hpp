@@ -72,6 +72,13 @@ std::string fault_of(Call&& call) {
   return "";
 }
 
+/// Whether a text holds each of the words.
+inline testing::AssertionResult holds(const std::string& text, std::initializer_list<std::string> words) {
+  for (const std::string& word : words)
+    if (text.find(word) == std::string::npos) return testing::AssertionFailure() << word << " is not in\n" << text;
+  return testing::AssertionSuccess() << "in\n" << text;
+}
+
 /// While it lives no file may grow beyond `bytes`: writes fail half-way, as they do on a full disk.
 class SmallFiles {
  public:

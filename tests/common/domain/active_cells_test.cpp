@@ -48,14 +48,12 @@ TEST(ActiveCells, a_point_has_its_block_and_one_ring) {
   const ActiveCells cells = active_cells(map, layer_height, points);
   EXPECT_EQ(cells.block_count(), 9u);
   EXPECT_EQ(cells.cell_count(), 9u * 16u * 3u);
-  for (int column = 0; column < map.columns; ++column) {
-    for (int row = 0; row < map.rows; ++row) {
+  for (int column = 0; column < map.columns; ++column)
+    for (int row = 0; row < map.rows; ++row)
       for (int layer = -1; layer < 7; ++layer) {
         const bool near = column >= 8 && column < 20 && row >= 4 && row < 16 && layer >= 2 && layer <= 4;
         ASSERT_EQ(cells.holds({column, row, layer}), near) << column << ' ' << row << ' ' << layer;
       }
-    }
-  }
 }
 
 TEST(ActiveCells, blocks_are_cut_off_at_the_edge_of_the_map) {

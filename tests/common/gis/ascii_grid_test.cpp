@@ -1,9 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One small grid in every dialect that is met in the wild; each must read as the same raster, to the bit.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstdlib>
 
 #include "common/gis/ascii_header.hpp"

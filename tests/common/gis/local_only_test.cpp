@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nothing is fetched, and nothing waited for: what GDAL is let open.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "common/error.hpp"
 #include "common/gis/dataset_files.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/geotiff.hpp"
@@ -40,12 +38,10 @@ TEST_F(LocalOnly, mosaics_of_what_lies_on_a_network_are_refused_before_they_are_
                                    "/vsizip//vsicurl/http://127.0.0.1:1/a.zip/a.tif", "/vsis3/bucket/a.tif",
                                    "/vsistdin/", "WMS:http://127.0.0.1:1/?LAYERS=a"}) {
     const std::string fault = refusal(vrt(source));
-    EXPECT_NE(fault.find("it names " + source), std::string::npos) << fault;
-    EXPECT_NE(fault.find("or give --network"), std::string::npos) << fault;
+    EXPECT_TRUE(test::holds(fault, {"it names " + source, "or give --network"}));
   }
-  EXPECT_NE(refusal("WMS:http://127.0.0.1:1/?LAYERS=a").find("nothing is fetched"), std::string::npos);
-  EXPECT_NE(test::fault_of<DataError>([] { read_polygons("PG:dbname=x", ""); }).find("nothing is fetched"),
-            std::string::npos);
+  EXPECT_TRUE(test::holds(refusal("WMS:http://127.0.0.1:1/?LAYERS=a"), {"nothing is fetched"}));
+  EXPECT_TRUE(test::holds(test::fault_of<DataError>([] { read_polygons("PG:dbname=x", ""); }), {"nothing is fetched"}));
 }
 
 TEST_F(LocalOnly, gdal_itself_opens_nothing_beyond_this_machine) {
@@ -65,11 +61,11 @@ TEST_F(LocalOnly, an_address_that_is_no_source_is_no_matter) {
 TEST_F(LocalOnly, pipes_are_refused_also_behind_a_mosaic_of_a_mosaic) {
   const auto pipe = scratch / "pipe.tif";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_NE(refusal(pipe).find("it is a pipe"), std::string::npos);
-  EXPECT_NE(test::fault_of<DataError>([&] { read_polygons(pipe, ""); }).find("it is a pipe"), std::string::npos);
+  EXPECT_TRUE(test::holds(refusal(pipe), {"it is a pipe"}));
+  EXPECT_TRUE(test::holds(test::fault_of<DataError>([&] { read_polygons(pipe, ""); }), {"it is a pipe"}));
   vrt("pipe.tif");
   std::filesystem::rename(scratch / "mosaic.vrt", scratch / "inner.vrt");
-  EXPECT_NE(refusal(vrt("inner.vrt")).find("it is a pipe"), std::string::npos);
+  EXPECT_TRUE(test::holds(refusal(vrt("inner.vrt")), {"it is a pipe"}));
   EXPECT_FALSE(with_sidecars({pipe}).empty()) << "listed, and not waited for";
 }
 
@@ -77,8 +73,8 @@ TEST_F(LocalOnly, a_raster_of_more_cells_than_memory_holds_is_refused_with_the_n
   const MapGrid grid{4, 4, 0, 0, 10, ""};
   write_geotiff(scratch / "a.tif", test::random_raster(grid, 1), {});
   const RasterFile file(vrt("a.tif", 2000000000));
-  const std::string fault = test::fault_of<DataError>([&] { file.read(); });
-  EXPECT_NE(fault.find("2000000000 x 2000000000 cells (3.2e+07 TB are needed"), std::string::npos) << fault;
+  EXPECT_TRUE(test::holds(test::fault_of<DataError>([&] { file.read(); }),
+                          {"2000000000 x 2000000000 cells (3.2e+07 TB are needed"}));
   EXPECT_EQ(test::fault_of<DataError>([&] { file.read({0, 1999999996, 4, 4}); }), "") << "a part of it is read";
 }
 
@@ -91,7 +87,7 @@ TEST_F(LocalOnly, cells_that_numbers_do_not_tell_apart_are_refused) {
   grid.cell = 0.01;
   EXPECT_NO_THROW(require_told_apart(grid, "")) << "millimetres, on the largest maps";
   write_geotiff(scratch / "far.tif", test::random_raster({4, 4, 1e17, 0, 10, ""}, 1), {});
-  EXPECT_NE(refusal(scratch / "far.tif").find("cannot be told from one another"), std::string::npos);
+  EXPECT_TRUE(test::holds(refusal(scratch / "far.tif"), {"cannot be told from one another"}));
 }
 
 }  // namespace

@@ -1,18 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/gis/raster_file.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/geotiff.hpp"
+#include "common/gis/raster_file.hpp"
 #include "common/gis/read_raster.hpp"
 
 #include <gdal_priv.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "common/error.hpp"
 #include "common/gis/vertical_unit.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/tools.hpp"
@@ -34,21 +29,19 @@ struct Opened : test::Workshop {
 void expect_windows_equal_whole(const RasterFile& file) {
   const Raster whole = file.read();
   const int width = 37, height = 23;  // no divisors of tiles or strips
-  for (int row = 0; row < whole.grid.rows; row += height) {
+  for (int row = 0; row < whole.grid.rows; row += height)
     for (int column = 0; column < whole.grid.columns; column += width) {
       const CellWindow w{column, row, std::min(width, whole.grid.columns - column),
                          std::min(height, whole.grid.rows - row)};
       const Raster part = file.read(w);
       ASSERT_DOUBLE_EQ(part.grid.x(0), whole.grid.x(column));
       ASSERT_DOUBLE_EQ(part.grid.y(0), whole.grid.y(row));
-      for (int r = 0; r < w.rows; ++r) {
+      for (int r = 0; r < w.rows; ++r)
         for (int c = 0; c < w.columns; ++c) {
           const double a = part.at(c, r), b = whole.at(column + c, row + r);
           ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << column + c << ", " << row + r;
         }
-      }
     }
-  }
 }
 
 struct Layout {
@@ -145,8 +138,8 @@ TEST_F(Opened, declared_feet_of_height_become_metres_and_the_log_says_so) {
   write_geotiff(scratch / "h.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {1000, std::nan("")}), {"z", "ft", {}});
   testing::internal::CaptureStderr();
   const Raster metres = read_raster(scratch / "h.tif");
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("h.tif: heights are in ft, converted to metres (x 0.3048)"),
-            std::string::npos);
+  EXPECT_TRUE(test::holds(testing::internal::GetCapturedStderr(),
+                          {"h.tif: heights are in ft, converted to metres (x 0.3048)"}));
   EXPECT_DOUBLE_EQ(metres.at(0, 0), 304.8);
   EXPECT_TRUE(std::isnan(metres.at(1, 0)));
 }
@@ -204,7 +197,7 @@ struct Geographic : Opened {
     double corner[] = {first_longitude, across, 0, north, 0, -down};
     raster->SetGeoTransform(corner);
     raster->SetSpatialRef(&degrees);
-    for (int line = 0; line < 300; ++line) {
+    for (int line = 0; line < 300; ++line)
       for (int column = 0; column < 200; ++column) {
         double x = west + (column + 0.5) * across, y = north - (line + 0.5) * down;
         to->Transform(1, &x, &y);
@@ -213,7 +206,6 @@ struct Geographic : Opened {
             raster->GetRasterBand(1)->RasterIO(GF_Write, column, line, 1, 1, &z, 1, 1, GDT_Float64, 0, 0, nullptr),
             CE_None);
       }
-    }
   }
   static double plane(double x, double y) { return 5000 + 0.3 * (x - 690000) - 0.2 * (y - 5490000); }
 
@@ -229,7 +221,7 @@ struct Geographic : Opened {
   /// Cells that hold a value; each must lie on the plane.
   static std::size_t on_plane(const Raster& raster) {
     std::size_t count = 0;
-    for (int row = 0; row < raster.grid.rows; ++row) {
+    for (int row = 0; row < raster.grid.rows; ++row)
       for (int column = 0; column < raster.grid.columns; ++column) {
         const double z = raster.at(column, row), expected = plane(raster.grid.x(column), raster.grid.y(row));
         // Bilinear of a plane that is curved in degrees: far below a millimetre over 30 m. A thousandth of a source
@@ -240,7 +232,6 @@ struct Geographic : Opened {
         }
         count += !std::isnan(z);
       }
-    }
     return count;
   }
 };
@@ -249,9 +240,8 @@ TEST_F(Geographic, a_raster_in_degrees_is_reprojected_on_request) {
   write("d.tif", west);
   testing::internal::CaptureStderr();
   const RasterFile opened(scratch / "d.tif", {utm_crs_of(scratch / "d.tif"), "", ""});
-  EXPECT_NE(
-      testing::internal::GetCapturedStderr().find("d.tif: reprojected from EPSG:4326 to EPSG:32611, cells of 25 m"),
-      std::string::npos);
+  EXPECT_TRUE(test::holds(testing::internal::GetCapturedStderr(),
+                          {"d.tif: reprojected from EPSG:4326 to EPSG:32611, cells of 25 m"}));
   const MapGrid& grid = opened.grid();
   EXPECT_EQ(crs_name(grid.crs_wkt), "EPSG:32611");
   EXPECT_EQ(grid.cell, 25);  // of 28.9 x 22.2 m
@@ -277,7 +267,7 @@ TEST_F(Geographic, nodata_that_is_not_declared_does_not_leak_into_what_is_reproj
   write("d.tif", west, 150);  // a line of -9999, undeclared
   testing::internal::CaptureStderr();
   const Raster raster = RasterFile(scratch / "d.tif", {epsg(32611), "", ""}).read();
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("-9999 or the like"), std::string::npos);
+  EXPECT_TRUE(test::holds(testing::internal::GetCapturedStderr(), {"-9999 or the like"}));
   double lowest = 1e9;
   for (const double z : raster.values)
     if (!std::isnan(z)) lowest = std::min(lowest, z);

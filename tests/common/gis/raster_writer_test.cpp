@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rasters written block by block.
-#include "common/gis/raster_writer.hpp"
 #include "common/gis/crs.hpp"
+#include "common/gis/raster_writer.hpp"
 #include "common/gis/read_raster.hpp"
 
-#include <cmath>
-
-#include "common/error.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
 

@@ -1,11 +1,5 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
-#include "common/error.hpp"
 #include "common/gis/resampling.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"

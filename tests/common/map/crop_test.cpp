@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cutting along cells, and the one rule beyond the edge.
-#include "common/map/crop.hpp"
 #include "common/gis/resampling.hpp"
+#include "common/map/crop.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ const MapGrid grid{5, 4, 500000, 5400000, 2.5, ""};
 /// Each cell of `part` holds what `whole` holds at that place, and NaN where `whole` has no cell.
 void expect_same_places(const Raster& part, const Raster& whole) {
   std::size_t outside = 0;
-  for (int row = 0; row < part.grid.rows; ++row) {
+  for (int row = 0; row < part.grid.rows; ++row)
     for (int column = 0; column < part.grid.columns; ++column) {
       const int c = static_cast<int>(std::floor((part.grid.x(column) - whole.grid.west) / whole.grid.cell)),
                 r = static_cast<int>(std::floor((part.grid.y(row) - whole.grid.south) / whole.grid.cell));
@@ -25,7 +25,6 @@ void expect_same_places(const Raster& part, const Raster& whole) {
       const double value = part.at(column, row);
       EXPECT_TRUE(inside ? value == whole.at(c, r) : std::isnan(value)) << column << ", " << row;
     }
-  }
   EXPECT_EQ(part.values.size(), part.grid.count());
   EXPECT_EQ(outside + shared_part(whole.grid, part.grid).count(), part.grid.count());
 }

@@ -21,11 +21,10 @@ TEST(fourier_length, has_no_prime_factor_beyond_five) {
 TEST(fourier_transform, finds_one_wave_at_its_place_and_gives_it_back) {
   constexpr int wide = 12, high = 10, along_x = 3, along_y = 8;
   std::vector<std::complex<double>> plane;
-  for (int row = 0; row < high; ++row) {
+  for (int row = 0; row < high; ++row)
     for (int column = 0; column < wide; ++column)
       plane.push_back(
           std::polar(2.0, 2 * std::numbers::pi * (column * double(along_x) / wide + row * double(along_y) / high)));
-  }
   const auto wave = plane;
   fourier_transform(plane, wide, high);
   for (std::size_t i = 0; i < plane.size(); ++i)

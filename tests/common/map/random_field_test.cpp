@@ -17,12 +17,11 @@ double covariance(double range, int dx, int dy) {
   double sum = 0, count = 0;
   for (int draw = 0; draw < 400; ++draw) {
     const auto v = field.next();
-    for (int row = 0; row + dy < field_grid.rows; ++row) {
+    for (int row = 0; row + dy < field_grid.rows; ++row)
       for (int column = 0; column + dx < field_grid.columns; ++column) {
         sum += v[field_grid.index(column, row)] * v[field_grid.index(column + dx, row + dy)];
         ++count;
       }
-    }
   }
   return sum / count;
 }

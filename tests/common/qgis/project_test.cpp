@@ -3,13 +3,9 @@
 // A project of QGIS as an XML document: what stands in it, and what QGIS asks of it.
 #include "common/qgis/project.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <map>
 #include <set>
 
-#include "common/error.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/common/xml.hpp"

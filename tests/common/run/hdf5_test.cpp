@@ -3,12 +3,6 @@
 // What the layer over HDF5 refuses: datasets of another kind or shape than asked for, and shapes without data.
 #include "common/run/hdf5.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-
-#include "common/error.hpp"
 #include "common/run/check_values.hpp"
 #include "tests/common/scratch.hpp"
 

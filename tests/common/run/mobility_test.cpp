@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/run/mobility.hpp"
 
-#include <gtest/gtest.h>
-
 #include "tests/postprocess/scene.hpp"
 
 namespace talus {
@@ -23,10 +21,9 @@ TEST(Mobility, finds_the_crown_on_the_surface_before) {
 TEST(Mobility, takes_the_middle_of_a_level_crown) {
   auto run = test::small_run();
   for (double& z : run.maps.before) z = 100;
-  for (int row = 0; row < run.maps.grid.rows; ++row) {
+  for (int row = 0; row < run.maps.grid.rows; ++row)
     for (int column = 0; column < run.maps.grid.columns; ++column)
       run.maps.before[run.maps.grid.index(column, row)] -= column;
-  }
   const auto place = crown(run.maps, 1.0);
   ASSERT_TRUE(place);
   EXPECT_EQ(place->x, run.maps.grid.x(3));

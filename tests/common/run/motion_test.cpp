@@ -3,8 +3,6 @@
 // Volume in motion, from the points of run.h5.
 #include "common/run/motion.hpp"
 
-#include <gtest/gtest.h>
-
 #include "common/run/run_file.hpp"
 #include "tests/common/scratch.hpp"
 

@@ -3,9 +3,6 @@
 // Which HDF5 files are read at all.
 #include "common/run/sealed_file.hpp"
 
-#include <gtest/gtest.h>
-
-#include "common/error.hpp"
 #include "common/stage/checksum.hpp"
 #include "tests/common/scratch.hpp"
 

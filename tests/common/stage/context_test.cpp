@@ -3,9 +3,6 @@
 // Contexts of one process, independent of each other.
 #include "common/stage/context.hpp"
 
-#include <gtest/gtest.h>
-
-#include <csignal>
 #include <thread>
 
 #include "common/stage/in_threads.hpp"

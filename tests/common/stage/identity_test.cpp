@@ -3,8 +3,6 @@
 // Marks of recipes: what counts, what does not, and what is said of a file of another one.
 #include "common/stage/identity.hpp"
 
-#include <gtest/gtest.h>
-
 #include "tests/common/findings.hpp"
 #include "tests/common/scratch.hpp"
 
@@ -86,8 +84,8 @@ TEST_F(JudgeMaker, says_that_nobody_can_tell_of_a_file_without_a_mark) {
   made.mark = "";
   testing::internal::CaptureStderr();
   EXPECT_FALSE(judge_maker(recipe, made));
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("out/run.h5: it does not say which recipe made it"),
-            std::string::npos);
+  EXPECT_TRUE(
+      test::holds(testing::internal::GetCapturedStderr(), {"out/run.h5: it does not say which recipe made it"}));
 }
 
 TEST(RunId, is_another_one_every_time) {

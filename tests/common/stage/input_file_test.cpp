@@ -3,12 +3,6 @@
 // What an input must be to be opened, and to have been read.
 #include "common/stage/input_file.hpp"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <string>
-
-#include "common/error.hpp"
 #include "common/gis/point_layer.hpp"
 #include "tests/common/scratch.hpp"
 
@@ -30,7 +24,7 @@ TEST(InputFile, that_fails_under_its_reader_is_no_shorter_file) {
 }
 
 TEST(InputFile, that_fails_is_refused_before_GDAL_looks_for_the_end_of_its_cells) {
-  EXPECT_NE(test::fault_of<DataError>([] { glance_at_raster(failing); }).find("cannot be read"), std::string::npos);
+  EXPECT_TRUE(test::holds(test::fault_of<DataError>([] { glance_at_raster(failing); }), {"cannot be read"}));
 }
 
 TEST(InputFile, text_counts_as_missing_only_where_it_is_not_there) {
@@ -39,10 +33,9 @@ TEST(InputFile, text_counts_as_missing_only_where_it_is_not_there) {
   EXPECT_EQ(text_if_there(scratch.write("long.txt", long_text)), long_text);
   EXPECT_EQ(text_if_there(scratch.write("empty.txt", "")), "");
   EXPECT_EQ(text_if_there(scratch / "none.txt"), std::nullopt);
-  EXPECT_NE(test::fault_of<DataError>([] { text_if_there(failing); }).find("cannot be read (Input/output error)"),
-            std::string::npos);
-  EXPECT_NE(test::fault_of<DataError>([&] { text_if_there(scratch.folder()); }).find("it is a folder"),
-            std::string::npos);
+  EXPECT_TRUE(
+      test::holds(test::fault_of<DataError>([] { text_if_there(failing); }), {"cannot be read (Input/output error)"}));
+  EXPECT_TRUE(test::holds(test::fault_of<DataError>([&] { text_if_there(scratch.folder()); }), {"it is a folder"}));
 }
 
 }  // namespace

@@ -3,13 +3,11 @@
 // The end of processes by signals, each in a process of its own: what it wrote, its exit code, what it left.
 #include "common/stage/interrupt.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <functional>
 
 #include "common/stage/in_threads.hpp"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/stage/output_lock.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,7 +42,7 @@ TEST(OutputLock, a_second_process_is_refused_by_the_name_of_the_first) {
   EXPECT_TRUE(text.starts_with(scratch.folder().string() + ": in use by talus-first (process " +
                                std::to_string(::getpid()) + " on "))
       << text;
-  EXPECT_NE(text.find(" UTC)"), std::string::npos) << text;
+  EXPECT_TRUE(test::holds(text, {" UTC)"}));
   EXPECT_TRUE(text.ends_with("Wait for it or end it, or write elsewhere with --out DIR")) << text;
   EXPECT_TRUE(holds_output_lock());
 }
@@ -70,17 +69,17 @@ TEST(OutputLock, the_file_of_a_killed_process_is_no_lock) {
     ::_exit(0);  // no destructor: the file stays
   }
   ::waitpid(child, nullptr, 0);
-  ASSERT_NE(text_of(scratch / ".talus.lock").find("talus-killed"), std::string::npos);
+  ASSERT_TRUE(test::holds(text_of(scratch / ".talus.lock"), {"talus-killed"}));
   const OutputLock lock(scratch.folder(), "talus-next");
-  EXPECT_NE(text_of(scratch / ".talus.lock").find("talus-next (process"), std::string::npos);
+  EXPECT_TRUE(test::holds(text_of(scratch / ".talus.lock"), {"talus-next (process"}));
 }
 
 TEST(OutputLock, a_full_disk_is_said_before_long_work_begins) {
   const Scratch scratch;
   const test::SmallFiles limit(0);
-  const std::string text = fault_of<DataError>([&] { const OutputLock lock(scratch.folder(), "talus-first"); });
-  EXPECT_EQ(text, scratch.folder().string() +
-                      ": the output folder cannot be written to (File too large). Name another one with --out DIR");
+  EXPECT_EQ(fault_of<DataError>([&] { const OutputLock lock(scratch.folder(), "talus-first"); }),
+            scratch.folder().string() +
+                ": the output folder cannot be written to (File too large). Name another one with --out DIR");
   EXPECT_EQ(scratch.files(), 0u);
 }
 

@@ -3,8 +3,6 @@
 // Files that are there whole or not at all.
 #include "common/stage/stage.hpp"
 
-#include <gtest/gtest.h>
-
 #include "tests/common/scratch.hpp"
 
 namespace talus {

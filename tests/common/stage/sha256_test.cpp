@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/stage/stage.hpp"
 
-#include <gtest/gtest.h>
-
 #include "tests/common/scratch.hpp"
 
 namespace talus {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
 #include "postprocess/compare/compare.hpp"
 #include "tests/postprocess/scene.hpp"
 

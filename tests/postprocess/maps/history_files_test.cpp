@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/maps/history_files.hpp"
 
-#include <gtest/gtest.h>
 #include <netcdf.h>
 #include <netcdf_mem.h>
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/score/polyline.hpp"
 
-#include <gtest/gtest.h>
-
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/score/resample.hpp"
 
-#include <gtest/gtest.h>
-
 #include "common/map/statistics.hpp"
 #include "tests/postprocess/scene.hpp"
 

@@ -3,10 +3,6 @@
 // Meshes of a run: where they lie, and the volume below them.
 #include "postprocess/three_d/meshes.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -28,7 +24,7 @@ std::vector<float> floats_of(const VtkMesh& mesh, const std::string& name) {
 double volume_below(const VtkMesh& mesh) {
   const auto bed = floats_of(mesh, "bed");
   double sum = 0;
-  for (const auto& q : mesh.quads) {
+  for (const auto& q : mesh.quads)
     for (const auto& triangle : {std::array{q[0], q[1], q[2]}, std::array{q[0], q[2], q[3]}}) {
       double mean = 0, area = 0;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -39,7 +35,6 @@ double volume_below(const VtkMesh& mesh) {
       EXPECT_GT(area, 0);  // anticlockwise from above
       sum += mean * area;
     }
-  }
   return sum;
 }
 

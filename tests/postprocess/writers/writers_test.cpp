@@ -3,9 +3,6 @@
 // The list of writers: names, files of a whole run, files of an earlier run.
 #include "postprocess/options/writer.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <set>
 
 #include "postprocess/postprocess.hpp"

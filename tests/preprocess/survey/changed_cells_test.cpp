@@ -19,9 +19,8 @@ std::vector<Patch> raised(const CellWindow& w, unsigned seed) {
   before.raster = test::raster_of(grid, [](double x, double y) { return 0.3 * (x - 500000) - 0.2 * (y - 5100000); });
   after.raster = before.raster;
   for (double& z : after.raster.values) z += noise(random);
-  for (int row = w.row; row < w.row + w.rows; ++row) {
+  for (int row = w.row; row < w.row + w.rows; ++row)
     for (int column = w.column; column < w.column + w.columns; ++column) after.raster.at(column, row) += 5;
-  }
   return patches_of(before, after, grid);
 }
 
@@ -30,7 +29,7 @@ std::vector<Patch> raised(const CellWindow& w, unsigned seed) {
 void expect_left_out(const CellWindow& w) {
   std::vector<Patch> patches = raised(w, 1);
   leave_out_changed(patches, {});
-  for (int row = 0; row < height; ++row) {
+  for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       const int far =
           std::max({w.column - column, column - (w.column + w.columns - 1), w.row - row, row - (w.row + w.rows - 1)});
@@ -38,7 +37,6 @@ void expect_left_out(const CellWindow& w) {
       if (far > 0 && far <= 4) continue;
       EXPECT_EQ(patches[0].unchanged[i] + patches[0].stable[i], far > 0 ? 2 : 0) << column << ", " << row;
     }
-  }
 }
 
 TEST(changed_cells, inside_the_map_are_left_out) { expect_left_out({20, 20, 8, 8}); }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Known shifts of synthetic and real terrain, found again.
-#include "preprocess/survey/coregistration.hpp"
 #include "common/gis/read_raster.hpp"
+#include "preprocess/survey/coregistration.hpp"
 
 #include <iostream>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which changed ground belongs to a slide: made ones with split deposits, neighbours and noise, and all pairs of
 // surveys at hand.
-#include <cstdlib>
 #include <iostream>
 
 #include "tests/places.hpp"
@@ -75,7 +74,7 @@ TEST(delineation, a_gap_longer_than_allowed_leaves_the_lobe_outside_and_says_how
   EXPECT_NEAR(deposit_of(slide) / made.volume(near_lobe), 1, 0.02);
   EXPECT_NEAR(slide.outside.sure_rise / made.volume(far_lobe), 1, 0.02);
   EXPECT_TRUE(slide.outside_is_large);
-  EXPECT_NE(outside_words(slide).find("draw the deposit"), std::string::npos) << outside_words(slide);
+  EXPECT_TRUE(test::holds(outside_words(slide), {"draw the deposit"}));
 }
 
 /// Heaps of four cells each stand out, and are noise by the number of their cells; together they are much of the slide.
@@ -90,7 +89,7 @@ TEST(delineation, much_within_reach_that_counts_as_noise_is_said_with_its_volume
   const SurveyedSlide slide = made.slide();
   EXPECT_NEAR(slide.near.rise / heaps, 1, 0.1) << "cells at their rims lie below the level";
   EXPECT_TRUE(slide.outside_is_doubtful);
-  EXPECT_NE(outside_words(slide).find("within reach of the slide"), std::string::npos) << outside_words(slide);
+  EXPECT_TRUE(test::holds(outside_words(slide), {"within reach of the slide"}));
   made.options.deposit.sure_cells = 2;
   EXPECT_FALSE(made.slide().outside_is_doubtful) << "fewer cells count as noise";
 }

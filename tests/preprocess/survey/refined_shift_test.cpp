@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shifts between coarse posts of rough terrain, with their stated errors.
-#include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <numbers>
 
@@ -34,13 +32,12 @@ std::vector<double> noise_field(std::mt19937& random, int cells, double length) 
   Spectrum plane(count);
   for (auto& value : plane) value = normal(random);
   fourier_transform(plane, cells, cells);
-  for (int row = 0; row < cells; ++row) {
+  for (int row = 0; row < cells; ++row)
     for (int column = 0; column < cells; ++column) {
       const double k = 2 * std::numbers::pi * std::hypot(waves_of(column, cells), waves_of(row, cells)) / cells;
       plane[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells) + static_cast<std::size_t>(column)] *=
           std::exp(-k * k * length * length / 2);
     }
-  }
   inverse_fourier_transform(plane, cells, cells);
   std::vector<double> field;
   double squares = 0;
@@ -58,31 +55,28 @@ class FractalTerrain {
     waves_.resize(static_cast<std::size_t>(fine_) * static_cast<std::size_t>(fine_));
     for (auto& value : waves_) value = normal(random);
     fourier_transform(waves_, fine_, fine_);
-    for (int row = 0; row < fine_; ++row) {
+    for (int row = 0; row < fine_; ++row)
       for (int column = 0; column < fine_; ++column) {
         const double number = std::hypot(waves_of(column, fine_), waves_of(row, fine_));
         at(waves_, column, row) *= number > 0 ? std::pow(number, -hurst - 1) : 0;
       }
-    }
   }
 
   /// Heights of the posts [m], the terrain moved by a part of a post; slopes along a line are 0.25 (rms) at posts of
   /// `post` metres.
   std::vector<double> posts(double east, double north, double post) const {
     Spectrum moved = waves_;
-    for (int row = 0; row < fine_; ++row) {
+    for (int row = 0; row < fine_; ++row)
       for (int column = 0; column < fine_; ++column) {
         const double turn =
             -2 * std::numbers::pi * (waves_of(column, fine_) * east + waves_of(row, fine_) * north) / posts_;
         at(moved, column, row) *= std::polar(1.0, turn);
       }
-    }
     inverse_fourier_transform(moved, fine_, fine_);
     std::vector<double> heights;
     double squares = 0;
-    for (int row = 0; row < fine_; row += 8) {
+    for (int row = 0; row < fine_; row += 8)
       for (int column = 0; column < fine_; column += 8) heights.push_back(at(moved, column, row).real());
-    }
     for (std::size_t i = 1; i < heights.size(); ++i) squares += std::pow(heights[i] - heights[i - 1], 2);
     const double scale = 0.25 * post / std::sqrt(squares / static_cast<double>(heights.size()));
     for (double& z : heights) z = 1500 + z * scale;
@@ -149,7 +143,7 @@ TEST(refined_shift, is_right_to_a_tenth_of_a_cell_between_coarse_posts_of_fracta
   constexpr int posts = 48;
   constexpr double post = 190;
   Tally tally;
-  for (const Noise& noise : {Noise{5, 0}, Noise{20, 0}, Noise{5, 6}, Noise{20, 3}}) {
+  for (const Noise& noise : {Noise{5, 0}, Noise{20, 0}, Noise{5, 6}, Noise{20, 3}})
     for (unsigned seed = 1; seed <= 6; ++seed) {
       std::mt19937 random(seed);
       std::uniform_real_distribution<double> part(-1.2, 1.2);
@@ -160,7 +154,6 @@ TEST(refined_shift, is_right_to_a_tenth_of_a_cell_between_coarse_posts_of_fracta
       add_noise(after, random, posts, noise);
       tally.add(aligned(grid_of(posts, posts, post), before, after), post, east, north);
     }
-  }
   tally.expect_right();
 }
 
@@ -191,10 +184,9 @@ TEST(refined_shift, says_when_it_is_not_known_to_a_tenth_of_a_cell) {
   const Survey survey = survey_of(scene.options);
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_GT(std::max(survey.fit.shift_error[0], survey.fit.shift_error[1]), 0.1 * 30);
-  EXPECT_NE(said.find("its shift on the map is known to"), std::string::npos) << said;
-  EXPECT_NE(said.find(" +- "), std::string::npos) << said;
+  EXPECT_TRUE(test::holds(said, {"its shift on the map is known to", " +- "}));
   const std::string json = survey_json(survey, {}, {});
-  EXPECT_NE(json.find("after_lies_error_cells"), std::string::npos) << json;
+  EXPECT_TRUE(test::holds(json, {"after_lies_error_cells"}));
 }
 
 /// Filling is linear in the values, and keeps those that count.
@@ -240,7 +232,7 @@ TEST(refined_shift, is_right_to_a_tenth_of_a_cell_between_posts_of_190_m_of_srtm
   constexpr double post = 190, rim = 4000;  // the rim: cells without data where the map was turned
   const MapGrid grid = grid_of(posts, posts, post);
   Tally tally;
-  for (const Noise& noise : {Noise{5, 0}, Noise{20, 0}, Noise{20, 3}}) {
+  for (const Noise& noise : {Noise{5, 0}, Noise{20, 0}, Noise{20, 3}})
     for (unsigned seed = 1; seed <= 8; ++seed) {
       std::mt19937 random(seed);
       std::uniform_real_distribution<double> part(-1.2, 1.2), corner(0, 1);
@@ -248,17 +240,15 @@ TEST(refined_shift, is_right_to_a_tenth_of_a_cell_between_posts_of_190_m_of_srtm
       const double x = srtm.grid.west + rim + corner(random) * (srtm.grid.columns * srtm.grid.cell - reach),
                    y = srtm.grid.south + rim + corner(random) * (srtm.grid.rows * srtm.grid.cell - reach);
       std::vector<double> before, after;
-      for (int row = 0; row < posts; ++row) {
+      for (int row = 0; row < posts; ++row)
         for (int column = 0; column < posts; ++column) {
           before.push_back(biquintic(srtm, x + column * post, y + row * post));
           after.push_back(biquintic(srtm, x + (column - east) * post, y + (row - north) * post));
         }
-      }
       add_noise(before, random, posts, noise);
       add_noise(after, random, posts, noise);
       tally.add(aligned(grid, before, after), post, east, north);
     }
-  }
   tally.expect_right(0.3);  // SRTM has no waves shorter than 180 m: less is folded than its longer waves let expect
 }
 

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Difference of two surveys: its error, its volumes, what of it is the slide.
-#include "preprocess/survey/survey.hpp"
 #include "common/gis/polygons.hpp"
 #include "common/gis/read_raster.hpp"
+#include "preprocess/survey/survey.hpp"
 
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -139,7 +138,7 @@ TEST(survey, refuses_to_align_without_stable_ground) {
   scene.rewrite_after(
       raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000) - 5; }));
   scene.options.coregistration.mode = Alignment::apply;
-  EXPECT_NE(scene.data_fault().find("no stable ground"), std::string::npos) << scene.data_fault();
+  EXPECT_TRUE(test::holds(scene.data_fault(), {"no stable ground"}));
 }
 
 /// They share a strip of eleven columns, but lie twelve apart.
@@ -151,7 +150,7 @@ TEST(survey, refuses_to_align_models_that_do_not_overlap_once_moved) {
   scene.rewrite_before(raster_of(grid, hills));
   scene.rewrite_after(raster_of(later, [&](double x, double y) { return hills(x + 120, y); }));
   scene.options.coregistration.mode = Alignment::apply;
-  EXPECT_NE(scene.data_fault().find("no stable ground"), std::string::npos) << scene.data_fault();
+  EXPECT_TRUE(test::holds(scene.data_fault(), {"no stable ground"}));
 }
 
 TEST(survey, says_so_when_one_model_looks_like_feet) {
@@ -160,8 +159,7 @@ TEST(survey, says_so_when_one_model_looks_like_feet) {
   for (double& z : feet.values) z /= 0.3048;
   scene.rewrite_after(feet);
   const std::string fault = scene.data_fault();
-  EXPECT_NE(fault.find("look like feet"), std::string::npos) << fault;
-  EXPECT_NE(fault.find("Declare it in after_dem: gdal_edit.py -units foot"), std::string::npos) << fault;
+  EXPECT_TRUE(test::holds(fault, {"look like feet", "Declare it in after_dem: gdal_edit.py -units foot"}));
 }
 
 /// A unit of heights, and the name of it that a file declares.
@@ -250,16 +248,14 @@ TEST(variogram, finds_range_and_nugget_of_a_made_field) {
   Patch patch;
   patch.before = raster_of(grid_of(size, size, 5), [](double, double) { return 0.0; });
   std::vector<double> field(patch.before.values.size());
-  for (int row = 0; row < size; ++row) {
+  for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column) {
       double sum = 0;
-      for (int j = 0; j < window; ++j) {
+      for (int j = 0; j < window; ++j)
         for (int i = 0; i < window; ++i)
           sum += white[static_cast<std::size_t>((row + j) * (size + window) + column + i)];
-      }
       field[patch.before.grid.index(column, row)] = std::sqrt(0.7) * sum / window + std::sqrt(0.3) * normal(random);
     }
-  }
   const Variogram v = variogram_of({patch}, {field});
   EXPECT_NEAR(v.nugget, 0.3, 0.1);
   EXPECT_NEAR(v.correlation(window * 5 * 1.5), 0, 0.1);
@@ -317,10 +313,8 @@ TEST(delineation, an_outline_that_crosses_itself_is_refused_before_anything_is_c
   scene.options.deposit.polygon =
       test::write_polygon(scene.scratch, "heap.csv",
                           "POLYGON((500100 5100100, 500300 5100200, 500300 5100100, 500100 5100200, 500100 5100100))");
-  EXPECT_NE(test::fault_of<DataError>([&] {
-              survey_of(scene.options);
-            }).find("heap.csv: polygon 1 is not valid (Self-intersection"),
-            std::string::npos);
+  EXPECT_TRUE(test::holds(test::fault_of<DataError>([&] { survey_of(scene.options); }),
+                          {"heap.csv: polygon 1 is not valid (Self-intersection"}));
 }
 
 /// The polygon runs between cell centres, so that cells on it count in part.

@@ -48,11 +48,9 @@ void expect_plane_kept(double cell) {
   scene.rewrite_after(test::raster_of(shifted, [&](double x, double y) { return plane(x, y) - 5; }));
   const Prepared prepared = scene.prepare();
   const MapGrid& grid = prepared.domain.grid;
-  for (int row = 2; row < grid.rows - 2; ++row) {
-    for (int column = 2; column < grid.columns - 2; ++column) {
+  for (int row = 2; row < grid.rows - 2; ++row)
+    for (int column = 2; column < grid.columns - 2; ++column)
       ASSERT_NEAR(prepared.domain.release_thickness.at(column, row), 5, 1e-9) << "cells of " << cell;
-    }
-  }
 }
 
 TEST(align, resamples_a_model_registered_otherwise) { expect_plane_kept(10); }
@@ -187,17 +185,15 @@ TEST(align, leaves_edge_nodata_outside_the_domain_when_asked) {
 TEST(trimmed, leaves_a_rectangle_without_holes_on_its_border) {
   const MapGrid grid = test::grid_of(50, 40, 1, 0, 0);
   std::vector<char> empty(grid.count());
-  for (int row = 0; row < 40; ++row) {
+  for (int row = 0; row < 40; ++row)
     for (int column = 0; column < 50; ++column) {  // data inside a turned square
       const double u = column - 25 + 0.1 * (row - 20), v = row - 20 - 0.1 * (column - 25);
       empty[grid.index(column, row)] = std::abs(u) > 22 || std::abs(v) > 17;
     }
-  }
   const CellWindow w = trimmed(grid, empty, 0);
   EXPECT_GT(w.columns * w.rows, 0.8 * 44 * 34);
-  for (int row = w.row; row < w.row + w.rows; ++row) {
+  for (int row = w.row; row < w.row + w.rows; ++row)
     for (int column = w.column; column < w.column + w.columns; ++column) ASSERT_FALSE(empty[grid.index(column, row)]);
-  }
 }
 
 }  // namespace

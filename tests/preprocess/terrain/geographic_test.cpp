@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elevation models in degrees and in feet, brought to metres on request.
-#include <fmt/format.h>
-
 #include "common/gis/coordinates.hpp"
 #include "common/gis/crs.hpp"
-#include "common/gis/geotiff.hpp"
 #include "preprocess/scene/prepare.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "tests/preprocess/terrain.hpp"
