@@ -7,6 +7,7 @@
 #include <functional>
 #include <numeric>
 
+#include "common/domain/domain_place.hpp"
 #include "common/stage/checksum.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
@@ -45,8 +46,11 @@ Domain sample(std::size_t count, unsigned seed = 1) {
   return domain;
 }
 
-TEST(DomainFile, round_trip_keeps_everything) {
+struct DomainFile : testing::Test {
   const Scratch scratch;
+};
+
+TEST_F(DomainFile, round_trip_keeps_everything) {
   const Domain domain = sample(20000);
   write_domain(scratch / "domain.vdb", domain);
   EXPECT_EQ(scratch.files(), 1u);
@@ -71,8 +75,7 @@ TEST(DomainFile, round_trip_keeps_everything) {
   }
 }
 
-TEST(DomainFile, places_come_back_to_the_last_bit_and_may_be_absent) {
-  const Scratch scratch;
+TEST_F(DomainFile, places_come_back_to_the_last_bit_and_may_be_absent) {
   Domain domain = sample(5);
   write_domain(scratch / "none.vdb", domain);
   EXPECT_TRUE(read_domain(scratch / "none.vdb").places.empty());
@@ -82,16 +85,14 @@ TEST(DomainFile, places_come_back_to_the_last_bit_and_may_be_absent) {
   EXPECT_EQ(read_domain(scratch / "domain.vdb").places, domain.places);
 }
 
-TEST(DomainFile, a_domain_without_points_can_be_written) {
-  const Scratch scratch;
+TEST_F(DomainFile, a_domain_without_points_can_be_written) {
   write_domain(scratch / "domain.vdb", sample(0));
   const Domain back = read_domain(scratch / "domain.vdb");
   EXPECT_EQ(back.points.size(), 0u);
   EXPECT_EQ(back.active, ActiveCells(30, 20));
 }
 
-TEST(DomainFile, vdb_print_lists_it) {
-  const Scratch scratch;
+TEST_F(DomainFile, vdb_print_lists_it) {
   write_domain(scratch / "domain.vdb", sample(100));
   const std::string command =
       "vdb_print -l -m " + (scratch / "domain.vdb").string() + " > " + (scratch / "list.txt").string() + " 2>&1";
@@ -107,8 +108,7 @@ constexpr auto unsealed =
     ": is damaged (its checksum is missing: another program wrote or changed it, or its end is lost). Run "
     "talus-preprocess again, or copy it again";
 
-TEST(DomainFile, every_truncation_is_noticed) {
-  const Scratch scratch;
+TEST_F(DomainFile, every_truncation_is_noticed) {
   write_domain(scratch / "domain.vdb", sample(50));
   const std::string whole = text_of(scratch / "domain.vdb");
   for (std::size_t length = 0; length < whole.size(); length += length < 200 ? 13 : 1511) {
@@ -121,8 +121,7 @@ TEST(DomainFile, every_truncation_is_noticed) {
   }
 }
 
-TEST(DomainFile, foreign_files_are_refused) {
-  const Scratch scratch;
+TEST_F(DomainFile, foreign_files_are_refused) {
   const auto words = scratch.write("words.vdb", "these are words, not volumes");
   EXPECT_EQ(fault_of<DataError>([&] { read_domain(words); }), words.string() + unsealed);
   seal_file(words, words);
@@ -153,11 +152,11 @@ std::string fault_after(const std::function<void(const openvdb::GridPtrVec& grid
       .substr((scratch / "domain.vdb").string().size());
 }
 
-TEST(DomainFile, a_domain_that_was_only_copied_is_read) {
+TEST_F(DomainFile, a_domain_that_was_only_copied_is_read) {
   EXPECT_THROW(fault_after([](const auto&, auto&, auto&) {}), std::out_of_range) << "there is no fault to cut";
 }
 
-TEST(DomainFile, another_format_is_refused) {
+TEST_F(DomainFile, another_format_is_refused) {
   EXPECT_EQ(fault_after([](const auto&, auto& header, auto&) {
               header.removeMeta("format");
               header.insertMeta("format", openvdb::Int64Metadata(4));
@@ -165,8 +164,7 @@ TEST(DomainFile, another_format_is_refused) {
             ": format 4 (this version reads 1). Run talus-preprocess again");
 }
 
-TEST(DomainFile, a_changed_byte_is_noticed_before_openvdb_sees_it) {
-  const Scratch scratch;
+TEST_F(DomainFile, a_changed_byte_is_noticed_before_openvdb_sees_it) {
   write_domain(scratch / "domain.vdb", sample(50));
   const std::string whole = text_of(scratch / "domain.vdb");
   for (std::size_t place = 20; place < whole.size() - 128; place += 997) {
@@ -190,7 +188,7 @@ std::string fault_with(const std::function<void(Domain&)>& change) {
   return fault.empty() ? fault : fault.substr(file.size());
 }
 
-TEST(DomainFile, numbers_that_cannot_be_are_refused_with_their_place) {
+TEST_F(DomainFile, numbers_that_cannot_be_are_refused_with_their_place) {
   const std::string no_domain = ": cannot be written (it does not read back as written: ";
   const auto said = [&](const std::string& fault) { return fault.substr(0, fault.find("). Check")); };
   EXPECT_EQ(fault_with([](Domain&) {}), "");
@@ -216,7 +214,7 @@ TEST(DomainFile, numbers_that_cannot_be_are_refused_with_their_place) {
   EXPECT_TRUE(test::holds(fault_with([](Domain& d) { d.bed = {{"colour", d.terrain}}; }), {"bed.colour"}));
 }
 
-TEST(DomainFile, places_without_points_are_refused) {
+TEST_F(DomainFile, places_without_points_are_refused) {
   EXPECT_EQ(fault_after([](const auto&, auto& header, auto&) {
               header.insertMeta("places", openvdb::Int64Metadata(1));
               header.insertMeta("place_of.0", openvdb::StringMetadata("set"));
@@ -226,7 +224,7 @@ TEST(DomainFile, places_without_points_are_refused) {
             ": not a whole domain (the entry \"place_points.0\" holds no points). Make it with talus-preprocess");
 }
 
-TEST(DomainFile, masks_of_other_grids_are_refused) {
+TEST_F(DomainFile, masks_of_other_grids_are_refused) {
   const std::string no_domain = ": not a whole domain (the mask \"active\" ";
   EXPECT_EQ(fault_after([](const auto&, auto&, auto& active) {
               active.removeMeta("h_z_m");
@@ -241,8 +239,7 @@ TEST(DomainFile, masks_of_other_grids_are_refused) {
       no_domain + "is not made of whole blocks of 4 x 4 columns). Make it with talus-preprocess");
 }
 
-TEST(DomainFile, a_full_disk_leaves_no_half_file) {
-  const Scratch scratch;
+TEST_F(DomainFile, a_full_disk_leaves_no_half_file) {
   const Domain domain = sample(20000);
   const std::string text = fault_of<DataError>([&] {
     const test::SmallFiles limit(200000);
@@ -250,6 +247,30 @@ TEST(DomainFile, a_full_disk_leaves_no_half_file) {
   });
   EXPECT_TRUE(text.starts_with((scratch / "domain.vdb").string() + ": cannot be written (")) << text;
   EXPECT_EQ(scratch.files(), 0u);
+}
+
+TEST(DomainPlace, names_of_files_become_names_of_columns) {
+  for (const auto& [given, plain] : {std::pair{"gully-mouth", "gully-mouth"},
+                                     {"Road 12 (north)", "Road-12-north"},
+                                     {"  a  b ", "a-b"},
+                                     {"Brücke", "Br-cke"},
+                                     {"x", "x"},
+                                     {"()", ""},
+                                     {"", ""}}) {
+    EXPECT_EQ(plain_name(given), plain) << given;
+    EXPECT_EQ(is_plain_name(given), std::string(given) == plain && !std::string(given).empty()) << given;
+  }
+}
+
+TEST(DomainPlace, points_come_back_to_the_last_bit) {
+  const MapLine points{{683080.1, 5497450.0 / 3}, {-0.0, 1e-300}, {std::nextafter(1, 2), 12}};
+  EXPECT_EQ(points_in(text_of_points(points)), points);
+  EXPECT_EQ(text_of_points({{1, 2.5}, {3, 4}}), "1,2.5 3,4");
+}
+
+TEST(DomainPlace, texts_that_are_no_points_are_told) {
+  for (const char* text : {"", " ", "1", "1,", "1,2 ", "1,2,3", "1;2", "1,2  3,4", "a,b", "nan,1", "1,inf", "1,2\n"})
+    EXPECT_FALSE(points_in(text)) << text;
 }
 
 }  // namespace

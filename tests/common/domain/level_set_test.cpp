@@ -6,12 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <openvdb/io/File.h>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <numbers>
 
 #include "common/domain/domain.hpp"
+#include "common/domain/write_grids.hpp"
 #include "common/stage/crash_report.hpp"
 #include "tests/common/damage.hpp"
 
@@ -21,6 +23,8 @@ namespace {
 using test::fault_of;
 using test::Scratch;
 
+constexpr std::array<double, 3> one_metre{1, 1, 1};  // the largest facets
+
 SolidBody ball(const std::string& name, double x, double y, double z, double radius) {
   return {name,
           {x - radius, y - radius, z - radius},
@@ -28,8 +32,11 @@ SolidBody ball(const std::string& name, double x, double y, double z, double rad
           [=](double px, double py, double pz) { return std::hypot(px - x, py - y, pz - z) - radius; }};
 }
 
-TEST(LevelSet, surface_of_a_ball_far_from_the_origin) {
+struct LevelSet : testing::Test {
   const Scratch scratch;
+};
+
+TEST_F(LevelSet, surface_of_a_ball_far_from_the_origin) {
   write_level_sets(scratch / "ball.vdb", {ball("ball", 512345.3, 5432100.7, 1234.5, 10)}, 0.5);
   for (const double largest : {5.0, 0.3}) {  // with and without facets to be cut
     const BodySurface surface = read_level_set(scratch / "ball.vdb", "", {largest, largest, largest});
@@ -49,8 +56,7 @@ TEST(LevelSet, surface_of_a_ball_far_from_the_origin) {
   }
 }
 
-TEST(LevelSet, surface_of_a_body_in_memory_is_that_of_its_file) {
-  const Scratch scratch;
+TEST_F(LevelSet, surface_of_a_body_in_memory_is_that_of_its_file) {
   const SolidBody body = ball("ball", 512345.3, 5432100.7, 1234.5, 4);
   write_level_sets(scratch / "ball.vdb", {body}, 0.5);
   const BodySurface file = read_level_set(scratch / "ball.vdb", "", {0.3, 0.4, 0.5});
@@ -62,22 +68,16 @@ TEST(LevelSet, surface_of_a_body_in_memory_is_that_of_its_file) {
   EXPECT_NE(fault_of<DataError>([&] { surface_of({ball("dust", 0.26, 0.26, 0.26, 0.1), 1}, {1, 1, 1}); }), "");
 }
 
-TEST(LevelSet, several_bodies_are_told_apart_by_name) {
-  const Scratch scratch;
+TEST_F(LevelSet, several_bodies_are_told_apart_by_name) {
   write_level_sets(scratch / "two.vdb", {ball("small", 0, 0, 0, 3), ball("large", 20, 0, 0, 6)}, 0.5);
   EXPECT_NEAR(read_level_set(scratch / "two.vdb", "large", {9, 9, 9}).volume, 904.8, 18);
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] {
-                            read_level_set(scratch / "two.vdb", "", {9, 9, 9});
-                          }),
-                          {"holds 2 grids"}));
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] {
-                            read_level_set(scratch / "two.vdb", "medium", {9, 9, 9});
-                          }),
+  EXPECT_TRUE(
+      test::holds(fault_of<DataError>([&] { read_level_set(scratch / "two.vdb", "", one_metre); }), {"holds 2 grids"}));
+  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_level_set(scratch / "two.vdb", "medium", one_metre); }),
                           {"large, small"}));
 }
 
-TEST(LevelSet, a_file_of_another_program_is_read_to_the_same_surface) {
-  const Scratch scratch;
+TEST_F(LevelSet, a_file_of_another_program_is_read_to_the_same_surface) {
   write_level_sets(scratch / "ball.vdb", {ball("ball", 512345.3, 5432100.7, 1234.5, 4)}, 0.5);
   const BodySurface ours = read_level_set(scratch / "ball.vdb", "", {0.3, 0.3, 0.3});
   const auto foreign = scratch.write("foreign.vdb", test::without_seal(scratch / "ball.vdb"));
@@ -90,15 +90,12 @@ TEST(LevelSet, a_file_of_another_program_is_read_to_the_same_surface) {
   EXPECT_EQ(theirs.facets.back().area, ours.facets.back().area);
 }
 
-TEST(LevelSet, a_changed_byte_is_noticed_before_openvdb_sees_it) {
-  const Scratch scratch;
+TEST_F(LevelSet, a_changed_byte_is_noticed_before_openvdb_sees_it) {
   write_level_sets(scratch / "ball.vdb", {ball("ball", 0, 0, 0, 3)}, 0.5);
   std::string changed = test::text_of(scratch / "ball.vdb");
   changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 1);
   const auto file = scratch.write("changed.vdb", changed);
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] {
-                            read_level_set(file, "", {1, 1, 1});
-                          }),
+  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_level_set(file, "", one_metre); }),
                           {"is damaged (bytes have changed"}));
 }
 
@@ -110,7 +107,7 @@ TEST(LevelSet, a_changed_byte_is_noticed_before_openvdb_sees_it) {
   std::string said = "read " + file.string();
   int code = 0;
   try {
-    read_level_set(file, "", {1, 1, 1});
+    read_level_set(file, "", one_metre);
   } catch (const DataError& error) {
     said = error.what();
     code = static_cast<int>(error.code());
@@ -149,10 +146,10 @@ std::string level_set_fault_after(const std::function<void(openvdb::FloatGrid&)>
   file.close();
   change(*openvdb::gridPtrCast<openvdb::FloatGrid>(grids->front()));
   openvdb::io::File(path.string()).write(*grids);
-  return fault_of<DataError>([&] { read_level_set(path, "", {1, 1, 1}); });
+  return fault_of<DataError>([&] { read_level_set(path, "", one_metre); });
 }
 
-TEST(LevelSet, numbers_that_cannot_be_are_refused) {
+TEST_F(LevelSet, numbers_that_cannot_be_are_refused) {
   EXPECT_EQ(level_set_fault_after([](openvdb::FloatGrid&) {}), "");
   EXPECT_TRUE(test::holds(level_set_fault_after([](openvdb::FloatGrid& grid) {
                             grid.setTransform(openvdb::math::Transform::createLinearTransform(1e8));
@@ -168,20 +165,45 @@ TEST(LevelSet, numbers_that_cannot_be_are_refused) {
                           {"at voxel 0 0 6 it holds nan"}));
 }
 
-TEST(LevelSet, refuses_what_is_none) {
-  const Scratch scratch;
-  EXPECT_THROW(read_level_set(scratch / "none.vdb", "", {1, 1, 1}), DataError);
+TEST_F(LevelSet, refuses_what_is_none) {
+  EXPECT_THROW(read_level_set(scratch / "none.vdb", "", one_metre), DataError);
   Domain domain;
   domain.grid = {4, 4, 0, 0, 1, ""};
   domain.layer_height = 1;
   domain.terrain = domain.before = domain.release_thickness = {domain.grid, std::vector<double>(16, 1.0)};
   write_domain(scratch / "domain.vdb", domain);
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] {
-                            read_level_set(scratch / "domain.vdb", "terrain", {1, 1, 1});
-                          }),
+  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_level_set(scratch / "domain.vdb", "terrain", one_metre); }),
                           {"is no level set"}));
   EXPECT_THROW(write_level_sets(scratch / "thin.vdb", {ball("dust", 0.26, 0.26, 0.26, 0.1)}, 1), DataError);
   EXPECT_FALSE(std::filesystem::exists(scratch / "thin.vdb"));
+}
+
+openvdb::GridPtrVec small_grid() {
+  openvdb::initialize();
+  auto grid = openvdb::FloatGrid::create(0);
+  grid->setName("one");
+  grid->tree().setValue({1, 2, 3}, 4.0F);
+  return {grid};
+}
+
+// openvdb::io::File ends well here.
+TEST(WriteGrids, a_write_that_fails_is_an_error) {
+  try {
+    write_grids("/dev/full", "walls.vdb", small_grid());
+    FAIL() << "nothing was said of a disk that takes no byte";
+  } catch (const DataError& error) {
+    EXPECT_TRUE(test::holds(error.what(), {"walls.vdb: cannot be written", "the disk is full"}));
+  }
+}
+
+TEST(WriteGrids, what_is_written_is_read_again) {
+  const Scratch scratch;
+  write_grids(scratch / "one.vdb", "one.vdb", small_grid());
+  openvdb::io::File file((scratch / "one.vdb").string());
+  file.open();
+  const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("one"));
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->tree().getValue({1, 2, 3}), 4.0F);
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 // Lines and points of vector files, and what is said of features that are neither.
 #include "common/gis/place_layer.hpp"
 
+#include <gtest/gtest.h>
+
+#include "common/error.hpp"
 #include "common/gis/crs.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
@@ -63,8 +66,10 @@ TEST(PlaceLayer, conditions_choose_among_features) {
             file.string() +
                 ": no feature in layer \"p\" whose attributes meet id = 3 (none meets it). Draw lines or points there, "
                 "or choose others (FILE|layername=LAYER|subset=CONDITION)");
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_place_layer(file.string() + "|subset=colour = 3", ""); }),
-                          {"cannot be understood"}));
+  EXPECT_NE(fault_of<DataError>([&] {
+              read_place_layer(file.string() + "|subset=colour = 3", "");
+            }).find("cannot be understood"),
+            std::string::npos);
 }
 
 TEST(PlaceLayer, layers_that_are_not_there_or_empty_are_refused) {
@@ -73,7 +78,7 @@ TEST(PlaceLayer, layers_that_are_not_there_or_empty_are_refused) {
   EXPECT_EQ(fault_of<DataError>([&] { read_place_layer(file.string() + "|layername=roads", ""); }),
             file.string() + ": no layer \"roads\" in it (it has p). Name one that is there");
   const auto empty = scratch.write("e.geojson", places_of(""));
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_place_layer(empty, ""); }), {"the layer is empty"}));
+  EXPECT_NE(fault_of<DataError>([&] { read_place_layer(empty, ""); }).find("the layer is empty"), std::string::npos);
   EXPECT_EQ(fault_of<DataError>([&] { read_place_layer(scratch / "none.gpkg", ""); }),
             (scratch / "none.gpkg").string() + ": no such file. Check the path in the recipe");
 }

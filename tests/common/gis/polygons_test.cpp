@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
+#include "common/error.hpp"
 #include "common/gis/polygons.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
@@ -126,9 +128,10 @@ TEST(ReadLines, refuses_files_without_a_line) {
       "a.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":
 [[[0,0],[1,0],[1,1],[0,0]]]}})",
                               utm_11));
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_lines(file, ""); }),
-                          {"no line in layer \"a\" (it holds POLYGON)"}));
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_lines(scratch / "none.gpkg", ""); }), {"no such file"}));
+  EXPECT_NE(fault_of<DataError>([&] { read_lines(file, ""); }).find("no line in layer \"a\" (it holds POLYGON)"),
+            std::string::npos);
+  EXPECT_NE(fault_of<DataError>([&] { read_lines(scratch / "none.gpkg", ""); }).find("no such file"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "common/gis/resampling.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/preprocess/terrain.hpp"
 
 namespace talus {
 namespace {
@@ -11,19 +12,12 @@ using test::epsg;
 using test::random_raster;
 using test::volume;
 
-/// z = 3 x - 2 y + 7 at cell centres.
 Raster plane(const MapGrid& grid) {
-  Raster raster{grid, std::vector<double>(grid.count())};
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      raster.at(column, row) = 3 * grid.x(column) - 2 * grid.y(row) + 7;
-  return raster;
+  return test::raster_of(grid, [](double x, double y) { return 3 * x - 2 * y + 7; });
 }
 
 TEST(ResampleThickness, keeps_the_volume_on_random_grids) {
-  std::random_device entropy;
-  const unsigned seed = entropy();
-  SCOPED_TRACE("seed " + std::to_string(seed));
+  TALUS_SEEDED(seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int trial = 0; trial < 50; ++trial) {
@@ -144,11 +138,7 @@ TEST(ResampleElevation, keeps_a_surface_of_the_fifth_degree_when_moved_by_part_o
   const auto bowl = [](double x, double y) {
     return 0.02 * x * x - 0.01 * x * y + 0.03 * y * y + 1e-8 * std::pow(x, 5) - 1e-8 * std::pow(y, 5);
   };
-  const MapGrid own{30, 30, -150, -150, 10, ""};
-  Raster source{own, std::vector<double>(own.count())};
-  for (int row = 0; row < 30; ++row)
-    for (int column = 0; column < 30; ++column)
-      source.at(column, row) = bowl(source.grid.x(column), source.grid.y(row));
+  Raster source = test::raster_of({30, 30, -150, -150, 10, ""}, bowl);
   MapGrid moved{20, 20, -97, -104, 10, ""};
   const Raster quintic = resample_elevation(source, moved, Interpolation::quintic),
                linear = resample_elevation(source, moved);

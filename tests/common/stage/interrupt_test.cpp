@@ -42,8 +42,11 @@ void work_on_for_ever() {
   for (;;) ::usleep(1000);
 }
 
-TEST(Interrupt, ends_a_process_that_a_library_keeps_busy) {
+struct Interrupt : testing::Test {
   const Scratch scratch;
+};
+
+TEST_F(Interrupt, ends_a_process_that_a_library_keeps_busy) {
   const int code = exit_code_of(scratch, [&] {
     const OutputLock lock(scratch.folder(), "talus-sample");
     const PendingFile pending(scratch / "map.tif");
@@ -60,8 +63,7 @@ TEST(Interrupt, ends_a_process_that_a_library_keeps_busy) {
       "stage again\n");
 }
 
-TEST(Interrupt, leaves_time_to_whoever_has_something_to_save) {
-  const Scratch scratch;
+TEST_F(Interrupt, leaves_time_to_whoever_has_something_to_save) {
   const int code = exit_code_of(scratch, [&] {
     const OwnEnd saving("the state is saved first");
     ::raise(SIGTERM);
@@ -76,8 +78,7 @@ TEST(Interrupt, leaves_time_to_whoever_has_something_to_save) {
             "\ntalus-sample: interrupted; the state is saved first (a second Ctrl-C ends it at once)\n");
 }
 
-TEST(Interrupt, counts_the_grace_once_nothing_is_left_to_save) {
-  const Scratch scratch;
+TEST_F(Interrupt, counts_the_grace_once_nothing_is_left_to_save) {
   EXPECT_EQ(exit_code_of(scratch,
                          [] {
                            {
@@ -89,8 +90,7 @@ TEST(Interrupt, counts_the_grace_once_nothing_is_left_to_save) {
             130);
 }
 
-TEST(Interrupt, a_second_signal_does_not_wait_for_what_is_saved) {
-  const Scratch scratch;
+TEST_F(Interrupt, a_second_signal_does_not_wait_for_what_is_saved) {
   EXPECT_EQ(exit_code_of(scratch,
                          [&] {
                            const OwnEnd saving("the state is saved first");
@@ -103,26 +103,18 @@ TEST(Interrupt, a_second_signal_does_not_wait_for_what_is_saved) {
   EXPECT_EQ(test::names_in(scratch.folder()), std::vector<std::string>{"log"});
 }
 
-TEST(Interrupt, heeds_the_terminal_that_closes_unless_told_to_ignore_it) {
-  const Scratch scratch;
-  EXPECT_EQ(exit_code_of(scratch,
-                         [] {
-                           ::raise(SIGHUP);
-                           ::_exit(interrupted() ? 5 : 6);
-                         }),
-            5);
+TEST_F(Interrupt, heeds_the_terminal_that_closes_unless_told_to_ignore_it) {
+  const auto close = [] {
+    ::raise(SIGHUP);
+    ::_exit(interrupted() ? 5 : 6);
+  };
+  EXPECT_EQ(exit_code_of(scratch, close), 5);
   const auto before = std::signal(SIGHUP, SIG_IGN);
-  EXPECT_EQ(exit_code_of(scratch,
-                         [] {
-                           ::raise(SIGHUP);
-                           ::_exit(interrupted() ? 5 : 6);
-                         }),
-            6);
+  EXPECT_EQ(exit_code_of(scratch, close), 6);
   std::signal(SIGHUP, before);
 }
 
-TEST(Interrupt, loops_stop_at_their_next_look) {
-  const Scratch scratch;
+TEST_F(Interrupt, loops_stop_at_their_next_look) {
   EXPECT_EQ(exit_code_of(scratch,
                          [] {
                            int done = 0;
@@ -139,8 +131,7 @@ TEST(Interrupt, loops_stop_at_their_next_look) {
             14);
 }
 
-TEST(Interrupt, work_that_threads_share_ends_with_what_is_begun) {
-  const Scratch scratch;
+TEST_F(Interrupt, work_that_threads_share_ends_with_what_is_begun) {
   const int code = exit_code_of(scratch, [] {
     std::atomic<int> done{0};
     try {

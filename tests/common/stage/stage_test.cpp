@@ -65,6 +65,10 @@ struct RunStage : testing::Test {
     err = testing::internal::GetCapturedStderr();
     return code;
   }
+  [[noreturn]] void run_and_exit(std::string file) {
+    char* argv[]{stage.name.data(), file.data()};
+    std::_Exit(run_stage(2, argv, stage));
+  }
   std::string recipe() { return scratch.write("r.toml", "").string(); }
 };
 
@@ -287,12 +291,7 @@ TEST_F(RunStage, ctrl_c_is_seen_by_the_stage_and_ends_with_130) {
     if (interrupted()) throw Interrupted({"stopped at step 12", "Ctrl-C", "Go on with --restart"});
   };
   const std::string file = recipe();
-  const auto body = [&] {
-    std::vector<std::string> words{stage.name, file};
-    std::vector<char*> argv{words[0].data(), words[1].data()};
-    std::_Exit(run_stage(2, argv.data(), stage));
-  };
-  EXPECT_EXIT(body(), testing::ExitedWithCode(130),
+  EXPECT_EXIT(run_and_exit(file), testing::ExitedWithCode(130),
               "talus-sample: stopped at step 12 \\(Ctrl-C\\). Go on with --restart");
 }
 
@@ -304,12 +303,7 @@ TEST_F(RunStage, a_second_signal_ends_the_process_at_once) {
     std::_Exit(99);
   };
   const std::string file = recipe();
-  const auto body = [&] {
-    std::vector<std::string> words{stage.name, file};
-    std::vector<char*> argv{words[0].data(), words[1].data()};
-    run_stage(2, argv.data(), stage);
-  };
-  EXPECT_EXIT(body(), testing::ExitedWithCode(130), "");
+  EXPECT_EXIT(run_and_exit(file), testing::ExitedWithCode(130), "");
 }
 
 TEST_F(RunStage, used_recipe_reads_back_and_names_what_went_in) {

@@ -10,8 +10,11 @@ namespace {
 
 constexpr auto seal_mend = "Make it again";
 
-TEST(Seal, a_sealed_file_is_whole_and_longer_by_one_line) {
+struct Seal : testing::Test {
   const test::Scratch scratch;
+};
+
+TEST_F(Seal, a_sealed_file_is_whole_and_longer_by_one_line) {
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, std::size_t{5000}, (std::size_t{1} << 20) + 7}) {
     const std::string text(length, 'x');
     const auto file = scratch.write("file", text);
@@ -25,8 +28,7 @@ TEST(Seal, a_sealed_file_is_whole_and_longer_by_one_line) {
   }
 }
 
-TEST(Seal, a_changed_byte_anywhere_is_noticed) {
-  const test::Scratch scratch;
+TEST_F(Seal, a_changed_byte_anywhere_is_noticed) {
   const auto file = scratch.write("file", std::string(300, 'x'));
   seal_file(file, file);
   const std::string whole = test::text_of(file);
@@ -43,8 +45,7 @@ TEST(Seal, a_changed_byte_anywhere_is_noticed) {
   }
 }
 
-TEST(Seal, a_file_with_bytes_missing_in_front_of_its_seal_is_refused_in_words) {
-  const test::Scratch scratch;
+TEST_F(Seal, a_file_with_bytes_missing_in_front_of_its_seal_is_refused_in_words) {
   const auto file = scratch.write("file", std::string(300, 'x'));
   seal_file(file, file);
   scratch.write("file", test::text_of(file).substr(1));
@@ -52,8 +53,7 @@ TEST(Seal, a_file_with_bytes_missing_in_front_of_its_seal_is_refused_in_words) {
             file.string() + ": is damaged (it holds 299 bytes, its last line speaks of 300). Make it again");
 }
 
-TEST(Seal, a_cut_file_has_none) {
-  const test::Scratch scratch;
+TEST_F(Seal, a_cut_file_has_none) {
   const auto file = scratch.write("file", std::string(300, 'x'));
   seal_file(file, file);
   scratch.write("file", test::text_of(file).substr(0, 400));
@@ -72,6 +72,22 @@ TEST(Sha256, bytes_may_come_in_any_parts) {
       sum.add(std::span(bytes).subspan(first, std::min(part, bytes.size() - first)));
     EXPECT_EQ(sum.digest(), digest) << part;
   }
+}
+
+TEST(Sha256, matches_published_vectors) {
+  const test::Scratch scratch;
+  EXPECT_EQ(sha256(scratch.write("empty", "")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256(scratch.write("abc", "abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_of_text("abc"), sha256(scratch / "abc"));
+  EXPECT_EQ(sha256(scratch.write("two", "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256(scratch.write("million", std::string(1000000, 'a'))),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256, says_what_it_cannot_read) {
+  EXPECT_EQ(test::fault_of<DataError>([] { sha256("/no/such"); }),
+            "/no/such: cannot be read (No such file or directory). Check the path and its permissions");
 }
 
 }  // namespace
