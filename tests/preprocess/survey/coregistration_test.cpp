@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Known shifts of synthetic and real terrain, found again.
-#include "common/gis/read_raster.hpp"
 #include "preprocess/survey/coregistration.hpp"
-
-#include <iostream>
+#include "common/gis/read_raster.hpp"
 
 #include "common/gis/raster_file.hpp"
-#include "tests/places.hpp"
-#include "tests/preprocess/terrain.hpp"
+#include "tests/preprocess/survey_data.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -152,14 +149,8 @@ TEST(coregistration, finds_no_horizontal_shift_on_a_plain) {
 
 /// D4 of the validation list: SRTM against itself, blurred and shifted by whole cells and some part of one.
 TEST(coregistration, brings_a_shifted_srtm_pair_from_57_m_to_3_m) {
-  const char* given = std::getenv("TALUS_DATA");
-  const auto folder =
-      (given ? std::filesystem::path(given) : std::filesystem::path(TALUS_SOURCE_DIR) / ".." / "shared" / "data") /
-      "coreg_srtm";
-  if (!std::filesystem::exists(folder)) {
-    std::cerr << "SKIPPED: " << folder.string() << " is missing (set TALUS_DATA)\n";
-    GTEST_SKIP() << folder.string() << " is missing";
-  }
+  const auto folder = test::survey_data("coreg_srtm");
+  TALUS_NEED_DATA(folder);
   ReadOptions how;
   how.to_crs = utm_crs_of(folder / "srtm_ref.tif");
   const Elevation before = read_elevation("before_dem", folder / "srtm_ref.tif", how);

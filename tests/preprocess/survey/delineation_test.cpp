@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which changed ground belongs to a slide: made ones with split deposits, neighbours and noise, and all pairs of
 // surveys at hand.
-#include <iostream>
 
-#include "tests/places.hpp"
 #include "tests/preprocess/scene.hpp"
+#include "tests/preprocess/survey_data.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -151,14 +150,8 @@ Options pair_in(const std::filesystem::path& folder) {
 
 /// The surveyed change of SOURCE.md: 22,543 m3 of rise in 130 cells, all of it in one run-out of 800 m.
 TEST(delineation, cascades_deposit_is_all_of_its_surveyed_rise) {
-  const char* given = std::getenv("TALUS_DATA");
-  const auto folder =
-      (given ? std::filesystem::path(given) : std::filesystem::path(TALUS_SOURCE_DIR) / ".." / "shared" / "data") /
-      "cascade2021";
-  if (!std::filesystem::exists(folder)) {
-    std::cerr << "SKIPPED: " << folder.string() << " is missing (set TALUS_DATA)\n";
-    GTEST_SKIP() << folder.string() << " is missing";
-  }
+  const auto folder = test::survey_data("cascade2021");
+  TALUS_NEED_DATA(folder);
   Options options = pair_in(folder);
   SurveyedSlide slide = *prepare(options, Points::counted).slide;
   EXPECT_NEAR(deposit_of(slide), 21834, 1);  // beyond threshold_m = 0.5

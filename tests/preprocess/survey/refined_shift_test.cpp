@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shifts between coarse posts of rough terrain, with their stated errors.
-#include <iostream>
 #include <numbers>
 
 #include "common/gis/raster_file.hpp"
@@ -12,8 +11,8 @@
 #include "preprocess/survey/patch_spectrum.hpp"
 #include "preprocess/survey/survey.hpp"
 #include "preprocess/survey/survey_json.hpp"
-#include "tests/places.hpp"
 #include "tests/preprocess/scene.hpp"
+#include "tests/preprocess/survey_data.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -216,14 +215,8 @@ TEST(smooth_fill, fills_two_fields_and_their_sum_alike) {
 
 /// SRTM (90 m) taken at posts of 190 m between its own, with noise alike over three posts and without.
 TEST(refined_shift, is_right_to_a_tenth_of_a_cell_between_posts_of_190_m_of_srtm) {
-  const char* given = std::getenv("TALUS_DATA");
-  const auto file =
-      (given ? std::filesystem::path(given) : std::filesystem::path(TALUS_SOURCE_DIR) / ".." / "shared" / "data") /
-      "coreg_srtm" / "srtm_ref.tif";
-  if (!std::filesystem::exists(file)) {
-    std::cerr << "SKIPPED: " << file.string() << " is missing (set TALUS_DATA)\n";
-    GTEST_SKIP() << file.string() << " is missing";
-  }
+  const auto file = test::survey_data("coreg_srtm/srtm_ref.tif");
+  TALUS_NEED_DATA(file);
   ReadOptions how;
   how.to_crs = utm_crs_of(file);
   const RasterFile source(file, how);

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Difference of two surveys: its error, its volumes, what of it is the slide.
+#include "preprocess/survey/survey.hpp"
 #include "common/gis/polygons.hpp"
 #include "common/gis/read_raster.hpp"
-#include "preprocess/survey/survey.hpp"
 
+#include <fstream>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>

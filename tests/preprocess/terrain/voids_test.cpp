@@ -1,32 +1,18 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/gis/read_raster.hpp"
 #include "preprocess/terrain/voids.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <chrono>
-#include <iostream>
 
 #include "preprocess/terrain/hole_filler.hpp"
-#include "tests/places.hpp"
-#include "tests/preprocess/terrain.hpp"
+#include "tests/preprocess/survey_data.hpp"
 
 namespace talus::preprocess {
 namespace {
 
 using test::grid_of;
 using test::raster_of;
-
-std::filesystem::path data(const std::string& file) {
-  const char* given = std::getenv("TALUS_DATA");
-  return (given ? std::filesystem::path(given) : std::filesystem::path(TALUS_SOURCE_DIR) / ".." / "shared" / "data") /
-         file;
-}
-
-#define TALUS_NEEDS(file)                                                            \
-  if (!std::filesystem::exists(file)) {                                              \
-    std::cerr << "SKIPPED: " << (file).string() << " is missing (set TALUS_DATA)\n"; \
-    GTEST_SKIP() << (file).string() << " is missing";                                \
-  }
 
 /// Cells within `radius` of one are without value.
 void punch(Raster& raster, int column, int row, double radius) {
@@ -115,8 +101,8 @@ TEST(voids, no_place_to_measure_by_gives_no_error) {
 }
 
 TEST(voids, the_stated_error_is_that_of_holes_in_real_terrain) {
-  const auto file = data("frank_slide/before_dem.tif");
-  TALUS_NEEDS(file);
+  const auto file = test::survey_data("frank_slide/before_dem.tif");
+  TALUS_NEED_DATA(file);
   const Raster whole = read_raster(file);
   std::mt19937 random(11);
   for (const double radius : {1.0, 3.0, 6.0}) {
@@ -200,8 +186,8 @@ TEST(outliers, smooth_ground_and_voids_raise_no_alarm) {
 
 TEST(outliers, real_terrain_raises_few_alarms) {
   for (const char* name : {"frank_slide/before_dem.tif", "cascade2021/before_dem.tif", "cascade2021/after_dem.tif"}) {
-    const auto file = data(name);
-    TALUS_NEEDS(file);
+    const auto file = test::survey_data(name);
+    TALUS_NEED_DATA(file);
     Raster raster = read_raster(file);
     const std::size_t alarms = spikes_and_pits(raster).size();
     std::cerr << name << ": " << alarms << " cells of " << raster.values.size()
