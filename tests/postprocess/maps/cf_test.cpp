@@ -36,19 +36,13 @@ class Cf : public ::testing::Test {
   static std::string checked(const std::string& files, const std::string& program = "check_cf.py") {
     return output_of("/usr/bin/python3 '" TALUS_SOURCE_DIR "/tests/postprocess/maps/" + program + "' " + files);
   }
-  static bool has_checker() {
-    return test::has_tool(
-        "/usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL(\"libudunits2.so.0\")'");
-  }
   test::Scratch scratch_;
   const std::filesystem::path file_ = scratch_ / "results.nc";
 };
 
-#define TALUS_NEED_CF_CHECKER                                                                       \
-  if (!has_checker()) {                                                                             \
-    if (std::getenv("TALUS_REQUIRE_TOOLS") != nullptr) FAIL() << "missing: python3-netcdf4";        \
-    GTEST_SKIP() << "SKIPPED: CF is not checked; install python3-netcdf4 python3-gdal udunits-bin"; \
-  }
+#define TALUS_CF_CHECKER                                                                         \
+  "/usr/bin/python3 -c 'import netCDF4, osgeo.gdal, ctypes; ctypes.CDLL(\"libudunits2.so.0\")'", \
+      "python3-netcdf4 python3-gdal udunits-bin"
 
 struct Place {
   const char* what;
@@ -58,7 +52,7 @@ struct Place {
 
 /// Every projection that has a name in CF, by a grid somebody works in, and no CRS at all.
 TEST_F(Cf, is_followed_to_the_letter_in_every_projection_it_names) {
-  TALUS_NEED_CF_CHECKER
+  TALUS_NEED_TOOL(TALUS_CF_CHECKER);
   const Place places[] = {{"transverse Mercator: UTM 32N", 32632, 600000, 5100000},
                           {"Lambert conic: Washington South", 32149, 361000, 70000},
                           {"Lambert azimuthal: Europe", 3035, 4321000, 2600000},
@@ -75,7 +69,7 @@ TEST_F(Cf, is_followed_to_the_letter_in_every_projection_it_names) {
 }
 
 TEST_F(Cf, is_checked_by_what_sees_every_break) {
-  TALUS_NEED_CF_CHECKER
+  TALUS_NEED_TOOL(TALUS_CF_CHECKER);
   EXPECT_EQ(checked(written(full_run(test::epsg(32632), 600000, 5100000), "whole.nc"), "break_cf.py"), "no faults\n");
 }
 

@@ -20,14 +20,6 @@ namespace {
 using test::small_grid;
 using test::small_run;
 
-TEST(Classes, fall_in_lightness_by_equal_steps) {
-  constexpr std::size_t count = 6;
-  for (std::size_t i = 0; i + 1 < count; ++i) {
-    const double step = oklab_lightness(class_colour(i, count)) - oklab_lightness(class_colour(i + 1, count));
-    EXPECT_NEAR(step, 0.68 / 5, 0.02) << "between class " << i << " and the next: equal steps must look equal";
-  }
-}
-
 TEST(Classes, follow_the_deposits_thickness_unless_they_are_given) {
   EXPECT_EQ(class_limits({}, 80).at(1), 2);
   EXPECT_EQ(class_limits({}, 11.9).at(1), 0.5);

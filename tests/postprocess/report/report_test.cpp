@@ -3,16 +3,58 @@
 // The report's data: what is packed comes back, and the page holds what it should.
 #include "postprocess/report/report.hpp"
 
+#include <fmt/format.h>
 #include <zlib.h>
+#include <nlohmann/json.hpp>
 
 #include "postprocess/report/pack.hpp"
 #include "postprocess/report/page.hpp"
-#include "tests/postprocess/report/report_of_run.hpp"
+#include "postprocess/report/parts.hpp"
+#include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
 namespace {
 
-class Report : public ReportOfRun {};
+/// A run, its options and score, and the report of them.
+class Report : public ::testing::Test {
+ protected:
+  Report() {
+    run_.maps.grid.crs_wkt = test::utm32n;
+    test::write_run(file_, run_);
+    thalweg_ = thalweg_of(run_, options_);
+  }
+  ReportInput input() {
+    return {run_,     options_, survey_,     score_ = make_score(run_, options_, survey_, thalweg_),
+            thalweg_, stages_,  comparison_, file_};
+  }
+
+  /// A survey on a grid of its own, half as fine, that has 1 m less than the simulation everywhere.
+  void survey_it() {
+    Survey survey;
+    survey.name = "last <year>";
+    survey.grid = run_.maps.grid;
+    for (const double h : run_.maps.deposit_thickness) survey.deposit.push_back(std::max(0.0, h - 1));
+    for (const double h : run_.maps.peak_thickness) survey.footprint.push_back(h);
+    survey.footprint_threshold = 1;
+    survey_ = survey;
+  }
+  static Json data_of(const std::string& page) {
+    const std::string begin = "<script type=\"application/json\" id=\"data\">";
+    const auto at = page.find(begin) + begin.size();
+    return Json::parse(page.substr(at, page.find("</script>", at) - at));
+  }
+
+  test::Scratch scratch_;
+  const std::filesystem::path file_ = scratch_ / "run.h5";
+  talus::Run run_ = test::small_run();
+  Options options_;
+  std::optional<Survey> survey_;
+  std::optional<std::string> comparison_;
+  Thalweg thalweg_;
+  Score score_;
+  std::vector<StageText> stages_{{"preprocess", {}},
+                                 {"solve", "# What\n# input: a  sha256 0\n\n[solve]\ncfl = 0.4  # default: 0.5\n"}};
+};
 
 std::string from_base64(const std::string& text) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -284,6 +326,70 @@ TEST(Page, loads_nothing_and_has_a_place_for_title_and_data) {
   for (const auto* words :
        {"<script src", "<link", "url(images/", "sourceMappingURL", "@LEAFLET", "@CHART", "@SCRIPT", "@STYLE"})
     EXPECT_EQ(page.find(words), std::string_view::npos) << words;
+}
+
+class ReportWords : public Report {};
+
+TEST_F(ReportWords, volume_in_motion_comes_from_every_record_of_the_history) {
+  run_.history.columns = {
+      {.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 0.5, 1}},
+      {.name = "moving_volume_m3", .unit = "m3", .quantity = "", .place = "", .values = {0, 700, 900}},
+      {.name = "moving_speed_m_s", .unit = "m s-1", .quantity = "", .place = "", .values = {0, 2, 3.25}}};
+  Json motion = data_of(report_html(input()))["series"]["motion"];
+  EXPECT_TRUE(motion["from_history"]);
+  EXPECT_EQ(motion["time"], (Json{0, 0.5, 1}));
+  EXPECT_EQ(motion["volume"], (Json{0, 700, 900}));
+  EXPECT_EQ(motion["mean_speed"], (Json{0, 2, 3.25}));
+  run_.history.columns.resize(2);  // a run from before
+  motion = data_of(report_html(input()))["series"]["motion"];
+  EXPECT_TRUE(motion.is_null() || !motion["from_history"].get<bool>());
+}
+
+TEST_F(ReportWords, gauges_and_obstacles_stand_on_the_map_with_what_was_measured) {
+  EXPECT_TRUE(data_of(report_html(input()))["places"].empty());
+  const auto window = shown_window(input());
+  run_.summary.places = {{"gauge toe", {{{window.west + 30, window.south + 40}}}},
+                         {"obstacle wall", {{{0, 0}, {4, 0}, {4, 9}}}}};
+  run_.history.columns = {
+      {.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 20, 40}},
+      {.name = "gauge_toe_thickness_m",
+       .unit = "m",
+       .quantity = "thickness",
+       .place = "gauge toe",
+       .values = {0, 3, 1}},
+      {.name = "x", .unit = "N s", .quantity = "impulse", .place = "obstacle wall", .values = {0, nan, -5}}};
+  const Json places = data_of(report_html(input()))["places"];
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_EQ(places[0]["kind"], "gauge");
+  EXPECT_EQ(places[0]["name"], "toe");
+  EXPECT_EQ(places[0]["rings"], (Json{{30.0, 40.0}}));
+  EXPECT_EQ(places[0]["measured"][0], (Json{{"quantity", "thickness"}, {"unit", "m"}, {"value", 3.0}, {"time", 20.0}}));
+  EXPECT_EQ(places[1]["rings"][0].size(), 6U);
+  EXPECT_EQ(places[1]["measured"][0]["value"], -5.0) << "the farthest from zero";
+}
+
+TEST_F(ReportWords, another_models_run_is_not_called_surveyed) {
+  survey_it();
+  survey_->name = "SHALTOP";
+  const auto words_of = [](const Score& score) {
+    std::string words;
+    for (const auto& section : score.sections) {
+      words += section.title + "\n";
+      for (const auto& entry : section.entries) words += entry.label + "\n";
+    }
+    for (const auto& [key, why] : score.not_scored) words += why + "\n";
+    for (const auto& note : score.notes) words += note + "\n";
+    return words;
+  };
+  EXPECT_TRUE(test::holds(words_of(make_score(run_, options_, survey_, thalweg_)), {"surveyed deposit volume"}));
+  survey_->kind = ReferenceKind::model;
+  std::string words = words_of(make_score(run_, options_, survey_, thalweg_));
+  EXPECT_TRUE(test::holds(words, {"reference deposit volume"}));
+  const std::string denial = "It was not surveyed.";
+  ASSERT_TRUE(test::holds(words, {denial}));
+  words.erase(words.find(denial), denial.size());
+  EXPECT_FALSE(test::holds(words, {"survey"})) << words.substr(words.find("survey") - 60, 120);
+  EXPECT_EQ(data_of(report_html(input()))["run"]["survey"]["noun"], "reference");
 }
 
 }  // namespace

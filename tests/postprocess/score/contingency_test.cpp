@@ -75,5 +75,32 @@ TEST(ThicknessError, is_taken_over_the_union_of_both_deposits) {
   EXPECT_TRUE(std::isnan(thickness_error({0}, {0}, 1).nmad));
 }
 
+TEST(Auroc, counts_pairs_and_halves_ties) {
+  // Survey yes at 5, 2, 0; no at 3, 0, 0. Pairs won: 5 beats all three; 2 beats two; 0 ties with two: (3 + 2 + 1) / 9.
+  EXPECT_DOUBLE_EQ(auroc({5, 2, 0, 3, 0, 0, 9, nan}, {4, 4, 4, 0, 1, 0, nan, 4}, 1), 6.0 / 9);
+}
+
+TEST(Auroc, is_one_for_perfect_order_and_a_half_for_none) {
+  EXPECT_EQ(auroc({4, 3, 2, 1}, {9, 9, 0, 0}, 1), 1);
+  EXPECT_EQ(auroc({1, 2, 3, 4}, {9, 9, 0, 0}, 1), 0);
+  EXPECT_EQ(auroc({1, 1, 1, 1}, {9, 9, 0, 0}, 1), 0.5);
+  EXPECT_TRUE(std::isnan(auroc({1, 2}, {9, 9}, 1)));
+}
+
+TEST(Residual, is_measured_in_units_of_sigma) {
+  //                                       r:  1    -2   0.5   no sigma  not surveyed  not counted
+  const auto r = residual_of({3, 1, 2.5, 9, 9, 9}, {2, 2, 2, 1, nan, 1}, {1, 0.5, 1, 0, 1, 1}, {1, 1, 1, 1, 1, 0});
+  EXPECT_EQ(r.cells, 3u);
+  EXPECT_DOUBLE_EQ(r.median, 0.5);
+  EXPECT_DOUBLE_EQ(r.within, 2.0 / 3);
+  EXPECT_DOUBLE_EQ(r.chi_squared, (1 + 4 + 0.25) / 3);
+}
+
+TEST(Residual, has_no_value_without_a_cell) {
+  const auto r = residual_of({3}, {2}, {1}, {0});
+  EXPECT_EQ(r.cells, 0u);
+  EXPECT_TRUE(std::isnan(r.chi_squared));
+}
+
 }  // namespace
 }  // namespace talus::postprocess

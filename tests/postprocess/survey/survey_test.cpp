@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The survey on disk and the one grid both sides are compared on.
+#include "postprocess/survey/survey.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
-#include "postprocess/survey/survey.hpp"
 
 #include "common/gis/coordinates.hpp"
 #include "postprocess/fields/fields.hpp"
@@ -174,7 +174,7 @@ TEST_F(SurveyTest, warns_where_the_range_of_its_errors_is_not_known) {
   };
   ASSERT_EQ(found().size(), 1u);
   EXPECT_EQ(found()[0].name, "unknown-correlation-length");
-  EXPECT_TRUE(test::holds(found()[0].message, {"Give correlation_length_m"}));
+  EXPECT_NE(found()[0].message.find("Give correlation_length_m"), std::string::npos) << found()[0].message;
 }
 
 TEST_F(SurveyTest, leaves_out_what_was_measured_without_a_sigma) {

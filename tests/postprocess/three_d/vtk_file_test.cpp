@@ -20,8 +20,11 @@ VtkMesh square() {
   return mesh;
 }
 
-TEST(VtkFile, a_mesh_comes_back_with_its_cells_and_arrays) {
+struct VtkFile : testing::Test {
   const test::Scratch scratch;
+};
+
+TEST_F(VtkFile, a_mesh_comes_back_with_its_cells_and_arrays) {
   write_vtp(scratch / "a.vtp", square());
   const test::VtkReader read(scratch / "a.vtp");
   EXPECT_EQ(read.count("NumberOfPoints"), 4U);
@@ -37,8 +40,7 @@ TEST(VtkFile, a_mesh_comes_back_with_its_cells_and_arrays) {
   EXPECT_EQ(points[11], 4);
 }
 
-TEST(VtkFile, without_quadrilaterals_each_point_is_a_vertex) {
-  const test::Scratch scratch;
+TEST_F(VtkFile, without_quadrilaterals_each_point_is_a_vertex) {
   VtkMesh mesh = square();
   mesh.quads.clear();
   write_vtp(scratch / "a.vtp", mesh);
@@ -48,8 +50,7 @@ TEST(VtkFile, without_quadrilaterals_each_point_is_a_vertex) {
   EXPECT_EQ(read.values<std::int64_t>("offsets", "Int64"), (std::vector<std::int64_t>{1, 2, 3, 4}));
 }
 
-TEST(VtkFile, arrays_longer_than_a_block_come_back_whole) {
-  const test::Scratch scratch;
+TEST_F(VtkFile, arrays_longer_than_a_block_come_back_whole) {
   VtkMesh mesh;
   std::vector<std::int32_t> ids;
   for (int i = 0; i < 150000; ++i) {
@@ -63,37 +64,32 @@ TEST(VtkFile, arrays_longer_than_a_block_come_back_whole) {
   EXPECT_EQ(read.values<double>("Points", "Float64").size(), 450000U);
 }
 
-TEST(VtkFile, nothing_at_all_is_a_file_too) {
-  const test::Scratch scratch;
+TEST_F(VtkFile, nothing_at_all_is_a_file_too) {
   write_vtp(scratch / "a.vtp", {});
   const test::VtkReader read(scratch / "a.vtp");
   EXPECT_EQ(read.count("NumberOfPoints"), 0U);
   EXPECT_TRUE(read.values<double>("Points", "Float64").empty());
 }
 
-TEST(VtkFile, words_are_numbers_so_that_none_can_end_the_xml) {
-  const test::Scratch scratch;
+TEST_F(VtkFile, words_are_numbers_so_that_none_can_end_the_xml) {
   write_vtp(scratch / "a.vtp", square());
   EXPECT_TRUE(test::holds(test::VtkReader(scratch / "a.vtp").xml(), {"69 80 83 71 58 51 50 54 51 50 32 34 60 38 0<"}));
 }
 
-TEST(VtkFile, an_array_of_another_length_is_a_bug) {
-  const test::Scratch scratch;
+TEST_F(VtkFile, an_array_of_another_length_is_a_bug) {
   VtkMesh mesh = square();
   mesh.on_points.push_back({"short", std::vector<float>{1}});
   EXPECT_THROW(write_vtp(scratch / "a.vtp", mesh), std::logic_error);
   EXPECT_EQ(scratch.files(), 0U);
 }
 
-TEST(VtkFile, a_full_disk_leaves_nothing_behind) {
-  const test::Scratch scratch;
+TEST_F(VtkFile, a_full_disk_leaves_nothing_behind) {
   const test::SmallFiles small(100);
   EXPECT_THROW(write_vtp(scratch / "a.vtp", square()), DataError);
   EXPECT_EQ(scratch.files(), 0U);
 }
 
-TEST(VtkFile, a_collection_names_a_file_for_each_time) {
-  const test::Scratch scratch;
+TEST_F(VtkFile, a_collection_names_a_file_for_each_time) {
   write_pvd(scratch / "a.pvd", {{0, 0, "surface/surface.0000.vtp"}, {2.5, 1, "a & b.vtp"}});
   const std::string text = test::text_of(scratch / "a.pvd");
   EXPECT_TRUE(test::holds(text, {"<DataSet timestep=\"0\" part=\"0\" file=\"surface/surface.0000.vtp\"/>",

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/compare/compare.hpp"
+#include "postprocess/report/filled_page.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -74,6 +75,64 @@ TEST(CompareDeposits, have_classes_up_to_the_largest_difference) {
   found.larger = 3;
   found.smaller = 12;
   EXPECT_EQ(difference_limits(found), (std::vector<double>{0.2, 0.4, 1, 2, 4, 10}));
+}
+
+std::size_t count_of(const std::string& text, const std::string& words) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++count;
+  return count;
+}
+
+ComparedRun run_called(const std::string& name) {
+  ComparedRun run{.name = name, .run = test::small_run(), .score = {}, .used = {}};
+  run.run.history.columns = {{"time_s", "s", "", "", {0, 1, 2}}, {"kinetic_J", "J", "", "", {0, 5e6, 1e6}}};
+  return run;
+}
+
+TEST(CompareCurves, show_every_record_of_both_runs) {
+  const std::string page = history_charts(run_called("a <b>"), run_called("c"));
+  EXPECT_EQ(count_of(page, "<polyline"), 2U);
+  EXPECT_FALSE(test::holds(page, {"<b>"})) << "a name is no markup";
+  const auto at = page.find("points=\"") + 8;
+  const std::string points = page.substr(at, page.find('"', at) - at);
+  EXPECT_EQ(std::count(points.begin(), points.end(), ','), 3);
+}
+
+TEST(CompareCurves, show_what_one_of_the_two_has_and_nothing_where_nothing_happened) {
+  ComparedRun first = run_called("a"), second = run_called("b");
+  second.run.history.columns.push_back({"gauge_toe_thickness_m", "m", "thickness", "gauge toe", {0, 1, 3}});
+  second.run.history.columns.push_back({"gauge_far_thickness_m", "m", "thickness", "gauge far", {0, 0, 0}});
+  const std::string page = history_charts(first, second);
+  EXPECT_EQ(count_of(page, "<polyline"), 3U);
+  EXPECT_TRUE(test::holds(page, {"gauge toe: thickness [m]"}));
+  EXPECT_FALSE(test::holds(page, {"gauge far"}));
+  first.run.history.columns.clear();
+  second.run.history.columns.clear();
+  EXPECT_EQ(history_charts(first, second), "");
+}
+
+TEST(CompareCurves, have_axes_of_few_round_steps) {
+  for (int n = 0; n < 66; ++n) {
+    const double range = 1e-3 * std::pow(1.7, n);  // to 1e12
+    EXPECT_GE(range / axis_step(range), 4 - 1e-9);
+    EXPECT_LE(range / axis_step(range), 10 + 1e-9);
+  }
+}
+
+TEST(ComparePage, lets_no_style_in_but_its_own_and_takes_names_as_text) {
+  const std::string hostile = "<img src=x onerror=alert(1)>\"'";
+  ComparedRun first{.name = hostile, .run = test::small_run(), .score = {}, .used = {}}, second = first;
+  first.run.summary.title = hostile;
+  for (double& h : second.run.maps.deposit_thickness) h *= 1.5;  // so that there are classes with colours
+  const std::string page = comparison_html(first, second, 0.1);
+  EXPECT_FALSE(test::holds(page, {"unsafe-"}));
+  EXPECT_FALSE(test::holds(page, {"style=\""})) << "no browser that heeds the policy takes it";
+  EXPECT_FALSE(test::holds(page, {"<img src=x"}));
+  const std::size_t begin = page.find("<style>") + 7, end = page.find("</style>");
+  ASSERT_LT(begin, end);
+  const std::string style = page.substr(begin, end - begin);
+  EXPECT_TRUE(
+      test::holds(page, {"style-src " + policy_source(style) + "\"", "<rect width=\"100%\" height=\"100%\" fill=\"#"}));
 }
 
 }  // namespace
