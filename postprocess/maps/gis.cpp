@@ -18,7 +18,6 @@
 #include "postprocess/fields/styles.hpp"
 #include "postprocess/fields/window.hpp"
 #include "postprocess/maps/geotiff.hpp"
-#include "postprocess/maps/hazard_maps.hpp"
 #include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {

@@ -11,6 +11,7 @@
 #include "common/gis/outlines.hpp"
 #include "common/qgis/project.hpp"
 #include "common/run/run_file.hpp"
+#include "postprocess/hazard/hazard.hpp"
 #include "postprocess/options/options.hpp"
 #include "postprocess/options/writer.hpp"
 #include "postprocess/survey/survey.hpp"
@@ -36,5 +37,14 @@ std::vector<std::size_t> shown_frames(std::size_t count, std::size_t most);
 /// Thickness at each frame, from maps/results.nc, in the classes of the deposit; not shown at first. Each lasts until
 /// the next begins. Without layers where the run has fewer than two frames.
 ProjectGroup flow_group(const Run& run, const Options& options);
+
+/// Write what there is of intensity.tif, reach_cone.tif (the first cone), each with its style, reach.gpkg (the outline
+/// of every cone, `angle_deg`, `h_over_l`) and buildings.gpkg (layers `buildings` and `obstacles`) into `folder`.
+/// Returns the files. Throws DataError.
+std::vector<std::filesystem::path> write_hazard_maps(const std::filesystem::path& folder, const Run& run,
+                                                     const Hazard& hazard);
+
+/// The layers of a project that show them: outlines first, then rasters.
+std::vector<ProjectGroup> hazard_groups(const Hazard& hazard);
 
 }  // namespace talus::postprocess

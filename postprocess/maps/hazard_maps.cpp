@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/maps/hazard_maps.hpp"
+#include "postprocess/maps/gis.hpp"
 
 #include <cmath>
 #include <limits>
