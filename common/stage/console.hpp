@@ -11,7 +11,6 @@ namespace talus {
 enum class Verbosity { quiet, normal, verbose };
 
 /// Of the calling thread's context (context.hpp).
-void set_verbosity(Verbosity verbosity);
 Verbosity verbosity();
 
 enum class LogLevel;

@@ -49,6 +49,5 @@ std::optional<std::string> text_if_there(const fs::path& file) {
 }
 
 bool network_allowed() { return context().network; }
-void allow_network(bool allowed) { context().network = allowed; }
 
 }  // namespace talus

@@ -23,6 +23,5 @@ std::optional<std::string> text_if_there(const std::filesystem::path& file);
 
 /// True where inputs may name places on a network (--network), in the calling thread's context.
 bool network_allowed();
-void allow_network(bool allowed);
 
 }  // namespace talus

@@ -43,8 +43,6 @@ void write_to_stderr(LogLevel level, const std::string& text) {
   stderr_logger().log(level == LogLevel::error ? spdlog::level::err : spdlog::level::info, prefix_of(level) + text);
 }
 
-void set_verbosity(Verbosity verbosity) { context().verbosity = verbosity; }
-
 Verbosity verbosity() { return context().verbosity; }
 
 void log_info(const std::string& text) { log_unless_kept_back(LogLevel::info, text); }
