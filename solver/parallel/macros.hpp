@@ -16,7 +16,9 @@
 #endif
 
 #if defined(__CUDA_ARCH__)
+#define TALUS_ON_CPU 0  // for which device a function of both is being compiled
 #define TALUS_UNROLL _Pragma("unroll")
 #else
+#define TALUS_ON_CPU 1
 #define TALUS_UNROLL
 #endif

@@ -72,10 +72,10 @@ struct GridToParticle {
   }
 
   TALUS_HD Sums gather(const Stencil<Real, Shape>& s) const {
-#if !defined(__CUDA_ARCH__)
     // A CPU tests flags at each of the nodes; the usual ones have a copy of the loop without.
-    if (affine && bound_by_layers && changes && grid.mapping == Mapping::terrain_following) return sum_up<true>(s);
-#endif
+    if constexpr (TALUS_ON_CPU == 1) {
+      if (affine && bound_by_layers && changes && grid.mapping == Mapping::terrain_following) return sum_up<true>(s);
+    }
     return sum_up<false>(s);
   }
 
