@@ -175,6 +175,19 @@ TALUS_HD void advance_material(const Material<Real, Laws>& m, const Mat3<Real>& 
   });
 }
 
+/// This function advances the state over a step in equal pieces (T14b).
+template <class Real, class Laws>
+TALUS_RARE void advance_in_pieces(const Material<Real, Laws>& m, const Mat3<Real> g, int pieces, Real seconds,
+                                  MaterialState<Real>& s) {
+  const Real part = Real(1) / Real(pieces);
+  Real slip = 0;
+  for (int n = 0; n < pieces; ++n) {
+    advance_material(m, Mat3<Real>{g.a * part, g.b * part, g.c * part}, seconds * part, s);
+    slip += s.plastic_shear;
+  }
+  s.plastic_shear = slip;
+}
+
 /// This function takes a share of a point's stress away; what has opened stays open.
 template <class Real, class Laws>
 TALUS_HD void forget_stress(const Material<Real, Laws>& m, Real kept, MaterialState<Real>& s) {

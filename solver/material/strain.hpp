@@ -85,6 +85,17 @@ TALUS_HD Sym3<Real> advance_deviation(const Sym3<Real>& strain, const Mat3<Real>
   return out;
 }
 
+/// The number of equal pieces in which a step takes its displacement gradient (T14b): the least power of two that
+/// leaves no piece whose entries sum to more than a half, 64 at most.
+template <class Real>
+TALUS_HD int pieces_of(const Mat3<Real>& g) {
+  const Real size = Real(fabs(g.a.x) + fabs(g.a.y) + fabs(g.a.z) + fabs(g.b.x) + fabs(g.b.y) + fabs(g.b.z) +
+                         fabs(g.c.x) + fabs(g.c.y) + fabs(g.c.z));
+  int pieces = 1;
+  while (pieces < 64 && size > Real(0.5) * Real(pieces)) pieces *= 2;
+  return pieces;
+}
+
 /// The logarithmic strain after the displacement gradient `g` of the step (T14).
 template <class Real>
 TALUS_HD Sym3<Real> advance_strain(const Sym3<Real>& strain, const Mat3<Real>& g) {

@@ -172,7 +172,11 @@ struct GridToParticle {
                               dilatant ? points.plastic_log_volume[p] : Real(0)};
     const Material<Real, Laws> material = materials.of(points.material, points.plastic_shear, p);
     const MaterialState<Real> before = state;
-    advance_material(material, g, dt, state);
+    const int pieces = pieces_of(g);
+    if (pieces == 1)
+      advance_material(material, g, dt, state);
+    else
+      advance_in_pieces(material, g, pieces, dt, state);
     const Real waves = wave_speed(material, state);
     if (!bound_by_layers && !material.holds_tension()) {
       const Real kept = share_kept_alone(sums.company.alone(s), waves * across);

@@ -90,6 +90,26 @@ TEST(HenckyStrain, knows_the_volume_change) {
   }
 }
 
+TEST(Pieces, turn_no_matter_inside_out) {
+  Random random(7);
+  int inside_out = 0;
+  for (const double size : {0.04, 0.3, 1.0, 3.0}) {
+    for (int n = 0; n < 500; ++n) {
+      const Matrix g = random.matrix(size);
+      const int pieces = pieces_of(columns(g));
+      EXPECT_LE(g.cwiseAbs().sum(), 0.5 * pieces) << "the size of a piece";
+      EXPECT_TRUE(pieces == 1 || g.cwiseAbs().sum() > 0.25 * pieces) << "no more pieces than it takes";
+      inside_out += (Matrix::Identity() + g).determinant() <= 0 ? 1 : 0;
+      MaterialState<double> state{};
+      advance_in_pieces(sand(), columns(g), pieces, 0.01, state);
+      const double piece = (Matrix::Identity() + g / pieces).determinant();
+      EXPECT_NEAR(state.log_volume, pieces * std::log(piece), 1e-12 * pieces);
+      EXPECT_TRUE(std::isfinite(norm_squared(state.elastic))) << "size " << size;
+    }
+  }
+  EXPECT_GT(inside_out, 200) << "that in one piece would have been";
+}
+
 TEST(EigenSymmetric, finds_values_and_directions) {
   Random random(3);
   for (int n = 0; n < 100; ++n) {
