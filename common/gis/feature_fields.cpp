@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/gis/feature_fields.hpp"
 
+#include <ogrsf_frmts.h>
+
 #include "common/gis/vector_layer.hpp"
 
 namespace talus {

@@ -3,11 +3,13 @@
 #include "common/gis/place_layer.hpp"
 
 #include <fmt/format.h>
+#include <ogrsf_frmts.h>
 
 #include <cmath>
 #include <memory>
 #include <optional>
 
+#include "common/gis/gdal_support.hpp"
 #include "common/gis/vector_layer.hpp"
 
 namespace talus {

@@ -3,9 +3,11 @@
 #include "common/gis/polygons.hpp"
 
 #include <fmt/format.h>
+#include <ogrsf_frmts.h>
 
 #include <cmath>
 
+#include "common/gis/gdal_support.hpp"
 #include "common/gis/vector_layer.hpp"
 
 namespace talus {

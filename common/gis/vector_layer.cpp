@@ -5,7 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <ogrsf_frmts.h>
+
+#include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
+#include "common/stage/crash_report.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
@@ -45,36 +49,52 @@ Transformation transformation_to(OGRLayer& layer, const std::string& crs_wkt) {
 
 }  // namespace
 
+struct VectorLayer::Opened {
+  WhileReading while_reading;
+  QuietErrors errors{};
+  Dataset dataset{};
+  OGRLayer* layer = nullptr;
+  Transformation transformation{};  ///< none: shapes stay where they are
+
+  explicit Opened(const fs::path& file) : while_reading(file, "Copy or download it again") {}
+};
+
 VectorLayer::VectorLayer(const fs::path& text, const std::string& crs_wkt, const std::string& usual)
-    : source_(vector_source(text)),
-      while_reading_(file(), "Copy or download it again"),
-      dataset_(open_vector(file())),
-      layer_(layer_of(*dataset_, source_, usual)) {
-  if (!where().empty() && (layer_->SetAttributeFilter(where().c_str()) != OGRERR_NONE || errors_.failed()))
-    throw DataError({fmt::format("{}: the condition {} cannot be understood", file().string(), where()), errors_.text(),
+    : source_(vector_source(text)), opened_(std::make_unique<Opened>(file())) {
+  opened_->dataset = open_vector(file());
+  opened_->layer = layer_of(*opened_->dataset, source_, usual);
+  if (!where().empty() && (layer().SetAttributeFilter(where().c_str()) != OGRERR_NONE || opened_->errors.failed()))
+    throw DataError({fmt::format("{}: the condition {} cannot be understood", file().string(), where()),
+                     opened_->errors.text(),
                      "Write it with the names of attributes: id = 12, or state = 'active'; ogrinfo -so lists them"});
-  transformation_ = transformation_to(*layer_, crs_wkt);
+  opened_->transformation = transformation_to(layer(), crs_wkt);
 }
+
+VectorLayer::~VectorLayer() = default;
+
+OGRLayer& VectorLayer::layer() const { return *opened_->layer; }
 
 std::unique_ptr<OGRGeometry> VectorLayer::shape_of(const OGRFeature& feature) const {
   if (feature.GetGeometryRef() == nullptr) return nullptr;
   std::unique_ptr<OGRGeometry> shape(feature.GetGeometryRef()->getLinearGeometry());  // arcs become short chords
-  if (transformation_ == nullptr || shape->transform(transformation_.get()) == OGRERR_NONE) return shape;
+  OGRCoordinateTransformation* way = opened_->transformation.get();
+  if (way == nullptr || shape->transform(way) == OGRERR_NONE) return shape;
   const char* what = wkbFlatten(shape->getGeometryType()) == wkbPolygon ? "a polygon" : "a shape";
-  throw DataError({fmt::format("{}: {} cannot be brought to the working CRS", file().string(), what), errors_.text(),
+  throw DataError({fmt::format("{}: {} cannot be brought to the working CRS", file().string(), what),
+                   opened_->errors.text(),
                    "Its coordinates do not fit its CRS. Name the true one: ogr2ogr -a_srs EPSG:<code> out.gpkg " +
                        file().string()});
 }
 
 void VectorLayer::require_whole() const {
-  if (errors_.failed())
-    throw DataError({file().string() + ": cannot be read to its end", errors_.text(),
+  if (opened_->errors.failed())
+    throw DataError({file().string() + ": cannot be read to its end", opened_->errors.text(),
                      "Look at it: ogrinfo -al " + file().string()});
 }
 
 Fault VectorLayer::none_found(const std::string& what, const std::string& other, const std::string& mend) const {
   const char* nothing = where().empty() ? "the layer is empty" : "none meets it";
-  return {fmt::format("{}: no {} in layer \"{}\"{}", file().string(), what, layer_->GetName(),
+  return {fmt::format("{}: no {} in layer \"{}\"{}", file().string(), what, layer().GetName(),
                       where().empty() ? "" : " whose attributes meet " + where()),
           other.empty() ? nothing : "it holds " + other, mend + " (FILE|layername=LAYER|subset=CONDITION)"};
 }

@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
-#include <ogrsf_frmts.h>
-
-#include "common/gis/gdal_support.hpp"
+#include "common/error.hpp"
 #include "common/gis/polygons.hpp"
-#include "common/stage/crash_report.hpp"
+
+class OGRFeature;
+class OGRGeometry;
+class OGRLayer;
+class OGRPolygon;
 
 namespace talus::gdal {
 
@@ -24,9 +26,12 @@ class VectorLayer {
   /// Opens a source. Where it names no layer, that called `usual` is taken if there is one, else the first. Throws
   /// DataError: no such file, not a vector file, no layer of the name, a condition that cannot be understood.
   VectorLayer(const std::filesystem::path& text, const std::string& crs_wkt, const std::string& usual = {});
+  VectorLayer(const VectorLayer&) = delete;
+  VectorLayer& operator=(const VectorLayer&) = delete;
+  ~VectorLayer();
 
   /// Its features that meet the condition.
-  OGRLayer& layer() const { return *layer_; }
+  OGRLayer& layer() const;
   const std::filesystem::path& file() const { return source_.file; }
   const std::string& where() const { return source_.where; }
   /// A shape as chords, carried to the other CRS; none: the feature has none. Throws DataError.
@@ -37,12 +42,9 @@ class VectorLayer {
   Fault none_found(const std::string& what, const std::string& other, const std::string& mend) const;
 
  private:
+  struct Opened;
   VectorSource source_;
-  WhileReading while_reading_;
-  QuietErrors errors_;
-  Dataset dataset_;
-  OGRLayer* layer_ = nullptr;
-  Transformation transformation_;  ///< none: shapes stay where they are
+  std::unique_ptr<Opened> opened_;
 };
 
 /// Calls `take` for a shape and for each part of what is a collection, down to those that are none.

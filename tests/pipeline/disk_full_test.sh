@@ -34,6 +34,7 @@ whole() {
     *.vdb) expect_exit 0 "$bin/talus-solve" recipe.toml --out "$(dirname "$1")" --check ;;
     *.gpkg) expect_exit 0 ogrinfo -al "$1" ;;
     *.vtp) [[ $(tail -n 1 "$1") == '</VTKFile>' ]] || fail "$1 is cut short" ;;
+    *.html) [[ $(tail -n 1 "$1") == '</html>' ]] || fail "$1 is cut short" ;;
     *.qml | *.qgs | *.pvd)
       expect_exit 0 python3 -c 'import sys, xml.etree.ElementTree as tree; tree.parse(sys.argv[1])' "$1"
       ;;

@@ -164,7 +164,7 @@ test_preprocess_hears_the_signal() {
 test_postprocess_hears_the_signal() {
   need_tool gdal_translate
   scene
-  gdal_translate -q -outsize 2000 2000 -a_srs EPSG:32611 survey.asc survey.tif   # which is drawn 200 times
+  gdal_translate -q -outsize 2000 2000 survey.asc survey.tif   # which is drawn 200 times
   sed -i 's/^thickness = .*/thickness = "survey.tif"\nsigma_m = 0.28/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve

@@ -56,7 +56,7 @@ struct Cantilever {
     options.material.youngs_modulus = 1e9;
     options.material.poisson_ratio = 0;
     options.walls.push_back({Axis::x, 0, Side::above, WallKind::fixed});
-    options.loads.push_back({{9.7, 10, 0, 1, 10, 11}, {0, 0, -k * 1e9 / 12 / 100}, 1.0});  // k E I / L^2
+    options.loads.push_back({{9.7, 0, 10, 1, 10, 11}, {0, 0, -k * 1e9 / 12 / 100}, 1.0});  // k E I / L^2
     options.implicit.linear_solver = LinearSolver::cholesky;
   }
   /// Mean deflection of the last points [m], which lie 1/8 m inside.

@@ -69,7 +69,7 @@ TEST(Places, that_leave_the_ground_are_refused_with_the_vertex) {
   expect_words(
       fault(table(scratch, "a,\"LINESTRING(20 20,20 80,20 96)\"\n")),
       "feature 1 (\"a\"): (20.00, 96.00) lies outside the domain (nothing is computed there). Draw it within x "
-      "5.00 to 195.00, y 5.00 to 95.00, or leave it out by where");
+      "5.00 to 195.00, y 5.00 to 95.00, or leave it out by a condition");
   EXPECT_EQ(fault(table(scratch, "a,\"LINESTRING(155 20,155 80)\"\n")), "") << "a line may cross a hole";
   expect_words(fault(table(scratch, "a,POINT(152 50)\n")), "(152.00, 50.00) lies outside the domain");
   EXPECT_EQ(fault(table(scratch, "a,POINT(195 95)\n")), "") << "the centre of the last cell";

@@ -97,7 +97,8 @@ TEST(thickness_factor, of_a_box_scales_its_height_from_the_ground) {
   expect_scaled_is_made(scene, 0.8);
   EXPECT_NEAR(scene.prepare().total.volume, 3 * 2 * 2.5 * 0.8, 1e-12);
   scene.options.box[0].bottom = 1;
-  EXPECT_NE(scene.recipe_fault().find("thickness_factor = 0.8 with a box above the ground"), std::string::npos);
+  EXPECT_NE(scene.recipe_fault().find("thickness_factor = 0.8 with a box whose bottom lies above the ground"),
+            std::string::npos);
 }
 
 TEST(thickness_factor, that_is_not_positive_is_refused) {

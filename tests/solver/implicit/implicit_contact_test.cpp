@@ -53,7 +53,7 @@ TEST_P(ImplicitContact, meets_an_indefinite_tangent_and_says_so) {
     o.material.poisson_ratio = 0;
     o.base.law = FrictionLaw::stick;
     o.gravity = {0.01, 0, 0};
-    o.loads.push_back({{3, 5, 3, 5, 15, 16}, {0, 0, -2e6}, 0.0});
+    o.loads.push_back({{3, 3, 5, 5, 15, 16}, {0, 0, -2e6}, 0.0});
     o.implicit.step = 1.0;
     o.implicit.linear_solver = linear_solver;
     o.implicit.forcing = Forcing::fixed;  // else the iterations end before they have met the direction
