@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/gis/raster_file.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/geotiff.hpp"
-#include "common/gis/raster_file.hpp"
 #include "common/gis/read_raster.hpp"
 
 #include <gdal_priv.h>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cutting along cells, and the one rule beyond the edge.
-#include "common/gis/resampling.hpp"
 #include "common/map/crop.hpp"
+#include "common/gis/resampling.hpp"
 
 #include <gtest/gtest.h>
 

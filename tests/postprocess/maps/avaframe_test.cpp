@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Aliases for AvaFrame: names as it takes them apart, thickness normal to the slope, units, nodata.
-#include "common/gis/read_raster.hpp"
 #include "postprocess/maps/avaframe.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <regex>
 
@@ -11,8 +11,6 @@
 
 namespace talus::postprocess {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// A run on a plane that falls 3 m over 4 m to the east: the cosine of its slope is 0.8 to the last digits. Its two
 /// southernmost rows have no ground.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What makes the maps ready for a GIS: styles, outlines at thresholds, the project.
-#include "common/gis/read_raster.hpp"
 #include "postprocess/maps/gis.hpp"
+#include "common/gis/read_raster.hpp"
 
 #include <fmt/format.h>
 

@@ -19,8 +19,6 @@
 namespace talus::preprocess {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// A model of 120 x 80 cells of 10 m whose heights follow a profile across x, and outlines on it.
 struct ManySlides {
   test::Scratch scratch;
@@ -209,8 +207,8 @@ TEST(Slides, without_a_polygon_are_refused) {
 TEST(Slides, take_no_keys_that_are_theirs_and_no_value_twice) {
   const ManySlides many;
   many.outlines({ManySlides::feature(300, 200, R"("name":"a","depth":2)")});
-  const std::string own = ManySlides::fault(
-      many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.release[0].grow_m", "depth"}})));
+  const std::string own =
+      ManySlides::fault(many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.release[0].grow_m", "depth"}})));
   EXPECT_NE(own.find("cannot be set by an attribute"), std::string::npos) << own;
   const std::string grid =
       ManySlides::fault(many.recipe(with_set({{thickness_key, "depth"}, {"preprocess.grid.spacing_m", "depth"}})));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "preprocess/terrain/scattered.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/read_raster.hpp"
-#include "preprocess/terrain/scattered.hpp"
 
 #include "preprocess/terrain/geo_input.hpp"
 #include "preprocess/terrain/point_table.hpp"
