@@ -73,9 +73,6 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
     refuse_file(file, "cannot be read", error.what(), write_it);
   } catch (const std::ios_base::failure& error) {
     refuse_file(file, "cannot be read", error.what(), write_it);
-  } catch (const std::bad_alloc&) {
-    refuse_file(file, "cannot be read", "it asks for more memory than there is: it is damaged, or far too fine",
-                write_it);
   }
 }
 
@@ -266,8 +263,12 @@ BodySurface read_level_set(const fs::path& file, const std::string& name, const 
   const auto size = fs::is_regular_file(file, unknown) ? fs::file_size(file, unknown) : 0;
   const MemoryBound bound(0x1p31 + 64 * static_cast<double>(size));  // compressed contents unfold some ten times
   openvdb::initialize();
-  const Wanted wanted{file, name, largest};
-  return surface_in(wanted, open_grid(file, name));
+  try {
+    return surface_in({file, name, largest}, open_grid(file, name));
+  } catch (const std::bad_alloc&) {
+    refuse_file(file, "cannot be read", "it asks for more memory than there is: it is damaged, or far too fine",
+                write_it);
+  }
 }
 
 BodySurface surface_of(const VoxelBody& given, const std::array<double, 3>& largest) {

@@ -8,7 +8,6 @@
 namespace talus::postprocess {
 namespace {
 
-using test::block;
 using test::small_grid;
 
 /// small_run() against its own deposit, known to `sigma` where something was measured.
