@@ -111,10 +111,7 @@ void write_holder(const fs::path& file, int descriptor, const std::string& progr
   if (::ftruncate(descriptor, 0) == 0 &&
       ::pwrite(descriptor, name.data(), name.size(), 0) == static_cast<ssize_t>(name.size()))
     return;
-  const int code = errno != 0 ? errno : ENOSPC;
-  ::unlink(file.c_str());
-  ::close(descriptor);
-  refuse_folder(file, code);
+  refuse_folder(file, errno != 0 ? errno : ENOSPC);
 }
 
 }  // namespace
@@ -123,9 +120,15 @@ OutputLock::OutputLock(const fs::path& folder, const std::string& program, const
     : context_(context()), file_(lock_file_of(folder, part)) {
   bool is_held = false;
   descriptor_ = lock(file_, is_held);
-  write_holder(file_, descriptor_, program);
-  context_.add_lock(file_, is_held);
-  doom(file_);
+  try {
+    write_holder(file_, descriptor_, program);
+    context_.add_lock(file_, is_held);
+    doom(file_);
+  } catch (...) {  // memory may run out on the way
+    ::unlink(file_.c_str());
+    ::close(descriptor_);
+    throw;
+  }
 }
 
 OutputLock::~OutputLock() {
