@@ -205,8 +205,13 @@ def of_page(file):
     return "whole"
 
 
+def of_project(file):
+    return re.sub("run [0-9a-f]{16}", "run", file.read_text())  # its print layout names the run
+
+
 READERS = {".h5": of_hdf5, ".nc": of_hdf5, ".tif": of_raster, ".gpkg": of_geopackage, ".vdb": of_openvdb,
-           ".json": of_json, ".html": of_page, ".toml": of_text, ".txt": of_text, ".csv": of_table}
+           ".json": of_json, ".html": of_page, ".toml": of_text, ".txt": of_text, ".csv": of_table,
+           ".qgs": of_project}
 
 
 def digest(file):
