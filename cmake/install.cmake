@@ -6,7 +6,9 @@
 set(TALUS_SHARE ${CMAKE_INSTALL_DATADIR}/talus)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)   # the tests need not be built for it: make build, then cmake --install
 
+set_target_properties(${TALUS_PROGRAMS} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/talus")
 install(TARGETS ${TALUS_PROGRAMS} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+install(TARGETS talus_openturns LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/talus COMPONENT runtime)
 
 # Recipes with the Makefile that chains the stages, and the samples that they name by ../../data_samples. Results of
 # installed pipelines go to where the user stands, since the folder is seldom the user's own.
@@ -34,6 +36,7 @@ install(DIRECTORY python/talus python/examples DESTINATION ${TALUS_SHARE}/python
 # libtalus: find_package(Talus) (docs/reference/library.md).
 set(_dev COMPONENT dev EXCLUDE_FROM_ALL)
 install(TARGETS talus_library EXPORT TalusTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ${_dev})
+install(TARGETS talus_openturns LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/talus ${_dev})
 install(EXPORT TalusTargets NAMESPACE Talus:: FILE TalusConfig.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Talus ${_dev})
 include(CMakePackageConfigHelpers)

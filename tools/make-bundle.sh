@@ -53,6 +53,8 @@ mkdir -p "$bundle"/{bin,lib}
 if [[ $name == bundle ]]; then
   cmake --install "$build" --prefix "$bundle" --component runtime >/dev/null ||
     fail "'cmake --install $build' failed. Build what it installs: make build"
+  mv "$bundle"/lib/talus/* "$bundle/lib/"   # what programs load themselves lies among the libraries
+  rmdir "$bundle/lib/talus"
 else
   [[ -x $build/bin/talus-solve ]] || fail "$build/bin/talus-solve is missing. Build it: make build"
   cp "$build/bin/talus-solve" "$bundle/bin/"
@@ -74,6 +76,8 @@ done
 
 # The closure is that of the built files, which know the way to every library on this machine.
 built=$(printf "$build/bin/%s\n" "${programs[@]}")
+mapfile -t modules < <(compgen -G "$bundle/lib/libtalus-*.so")
+for module in "${modules[@]}"; do built+=$'\n'$build/lib/$(basename "$module"); done
 needed=$(xargs ldd <<<"$built")
 unresolved=$(grep 'not found' <<<"$needed" || true)
 [[ -z $unresolved ]] || fail "libraries not found on this machine: $unresolved"
@@ -88,7 +92,7 @@ done < <(awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' <<<"$needed" | sort -u)
 # A library with a search path of its own would look there instead of in the bundle.
 chmod u+w "$bundle"/lib/*
 for library in "$bundle"/lib/*; do
-  if [[ -n $(patchelf --print-rpath "$library") ]]; then
+  if [[ -n $(patchelf --print-rpath "$library") || " ${modules[*]} " == *" $library "* ]]; then
     patchelf --force-rpath --set-rpath '$ORIGIN' "$library"
   fi
 done
@@ -120,7 +124,7 @@ rm -rf "$bundle"/share/doc/*/notices   # those of what is compiled in: they are 
 
 # The check: with an empty environment, every library must come from the bundle or be one of those outside.
 strangers=0
-for program in "${programs[@]/#/$bundle/bin/}"; do
+for program in "${programs[@]/#/$bundle/bin/}" "${modules[@]}"; do
   while read -r soname path; do
     real=$(realpath "$path")
     if [[ $real != "$(realpath "$bundle")"/* && ! $soname =~ $outside ]]; then

@@ -21,6 +21,7 @@ cp -r "$source/python/talus" "$work"
 cp "$module" "$work/talus"
 library=$build/lib/libtalus.so
 cp "$(realpath "$library")" "$work/talus/$(objdump -p "$library" | awk '/SONAME/ { print $2 }')"
+cp "$build/lib/libtalus-openturns.so" "$work/talus"
 strip --strip-unneeded "$work"/talus/*.so*
 TALUS_VERSION=$(sed -nE 's/^project\(talus VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")
 export TALUS_VERSION

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "postprocess/ensemble/statistics.hpp"
+#include "common/ensemble/openturns.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -53,7 +53,7 @@ Sensitivity sobol(const MemberTable& table, const std::vector<double>& result) {
   }
   std::vector<std::vector<double>> inputs;
   for (const MemberColumn& column : table.columns) inputs.push_back(chosen(column.values, places));
-  const SobolIndices indices = sobol_indices(inputs, values, whole.size());
+  const openturns::SobolIndices indices = openturns::library().sobol_indices(inputs, values, whole.size());
   for (std::size_t n = 0; n < table.columns.size(); ++n) {
     const std::string& key = table.columns[n].key;
     found.indices.push_back({key, Measure::first_order, indices.first[n], indices.first_low[n], indices.first_high[n]});
@@ -113,11 +113,11 @@ Sensitivity ranks(const MemberTable& table, const std::vector<double>& result) {
   }
   if (!left_out.empty()) found.note = fmt::format("no ranks: {}", fmt::join(left_out, ", "));
   if (keys.empty()) return found;
-  const std::vector<double> correlation = rank_correlations(inputs, values);
+  const std::vector<double> correlation = openturns::library().rank_correlations(inputs, values);
   for (std::size_t n = 0; n < keys.size(); ++n)
     found.indices.push_back(spearman_index(keys[n], correlation[n], places.size()));
   if (places.size() < keys.size() + 2) return found;
-  const std::vector<double> regression = rank_regression(inputs, values);
+  const std::vector<double> regression = openturns::library().rank_regression(inputs, values);
   for (std::size_t n = 0; n < regression.size(); ++n)
     found.indices.push_back({keys[n], Measure::srrc, regression[n], nan, nan});
   return found;

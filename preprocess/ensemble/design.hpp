@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the members of an ensemble lie in the unit cube of their keys: designs of OpenTURNS.
+// Where the members of an ensemble lie in the unit cube of their keys.
 #pragma once
 
 #include <cstdint>

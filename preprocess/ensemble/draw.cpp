@@ -81,12 +81,12 @@ void draw_one_at_a_time(MemberTable& table, const std::vector<Marginal>& margina
 }
 
 void draw_sample(MemberTable& table, const EnsembleOptions& o, const std::vector<Marginal>& marginals) {
-  const Copula copula(o.vary, o.correlation);
+  const auto copula = copula_of(o.vary, o.correlation);
   UnitDesign design = unit_design(o.design, o.members, marginals.size(), o.seed);
   table.count = static_cast<std::int64_t>(design.shares.size());
   table.sample_size = design.sample_size;
   for (std::vector<double>& shares : design.shares) {
-    copula.bind(shares);
+    if (copula != nullptr) copula->bind(shares);
     for (std::size_t d = 0; d < marginals.size(); ++d)
       table.columns[d].values.push_back(marginals[d].quantile(shares[d]));
   }

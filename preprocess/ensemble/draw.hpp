@@ -13,7 +13,7 @@ namespace talus::preprocess {
 
 /// Draws the members: their number, and the value of each key in each of them; own_domain and provenance are left to
 /// the caller. Equal options give equal tables. Throws RecipeError where the design does not go with what varies, and
-/// as Marginal, Copula and unit_design() do; DataError as read_csv() does.
+/// as Marginal, copula_of() and unit_design() do; DataError as read_csv() does.
 MemberTable draw_members(const EnsembleOptions& options);
 
 /// What people read of a table: the design and its number of members, and smallest value, mean and largest of each key.

@@ -7,27 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <openturns/BetaMuSigma.hxx>
-#include <openturns/LogNormal.hxx>
-#include <openturns/LogNormalMuSigma.hxx>
-#include <openturns/Mixture.hxx>
-#include <openturns/Normal.hxx>
-#include <openturns/Triangular.hxx>
-#include <openturns/TruncatedDistribution.hxx>
-#include <openturns/Uniform.hxx>
-#include <openturns/UserDefined.hxx>
 #include <utility>
 
 #include "common/error.hpp"
 #include "preprocess/ensemble/csv.hpp"
 
 namespace talus::preprocess {
-
-struct Marginal::Law {
-  OT::Distribution distribution;
-};
-
 namespace {
+
+using openturns::AnyLaw;
 
 constexpr double least_share = 1e-6;  // of a distribution that must be left between low and high
 
@@ -37,21 +25,19 @@ constexpr double least_share = 1e-6;  // of a distribution that must be left bet
 }
 
 /// What is left of a distribution between low and high, where they are given.
-OT::Distribution cut_off(const OT::Distribution& whole, const VaryOptions& o) {
+AnyLaw cut_off(const AnyLaw& whole, const VaryOptions& o) {
   if (!o.low && !o.high) return whole;
-  const double below = o.low ? whole.computeCDF(*o.low) : 0.0, beyond = o.high ? 1 - whole.computeCDF(*o.high) : 0.0;
+  const double below = o.low ? whole->below(*o.low) : 0.0, beyond = o.high ? 1 - whole->below(*o.high) : 0.0;
   const double left = 1 - below - beyond;
   if (!(left >= least_share))
     refuse_vary(o, fmt::format("low and high leave {:.2g} of the distribution", std::max(0.0, left)),
                 fmt::format("its mean is {:g}, its deviation {:g}", *o.mean, *o.deviation),
                 "Give bounds around the mean, or a larger deviation");
-  using Cut = OT::TruncatedDistribution;
-  if (o.low && o.high) return Cut(whole, *o.low, *o.high);
-  return o.low ? Cut(whole, *o.low, Cut::LOWER) : Cut(whole, *o.high, Cut::UPPER);
+  return whole->between(o.low, o.high);
 }
 
 /// Beta on [low, high] by mean and deviation, which must leave its two shapes positive.
-OT::Distribution beta_of(const VaryOptions& o) {
+AnyLaw beta_of(const VaryOptions& o) {
   const double low = *o.low, high = *o.high, mean = *o.mean, most = (mean - low) * (high - mean);
   if (!(mean > low && mean < high))
     refuse_vary(o, fmt::format("mean = {:g} is not between low and high", mean), "the distribution lies there",
@@ -61,33 +47,26 @@ OT::Distribution beta_of(const VaryOptions& o) {
                 fmt::format("with this mean no distribution between {:g} and {:g} has one of {:g} or more", low, high,
                             std::sqrt(most)),
                 "Give a smaller one, or wider bounds");
-  return OT::BetaMuSigma(mean, *o.deviation, low, high).getDistribution();
+  return openturns::library().beta(mean, *o.deviation, low, high);
 }
 
 /// A density that is linear between the rows of a table: a mixture of triangles, one over each row.
-OT::Distribution tabulated(const VaryOptions& o) {
+AnyLaw tabulated(const VaryOptions& o) {
   const std::vector<DensityRow> rows = read_density(o.table);
-  OT::Mixture::DistributionCollection triangles;
-  OT::Point shares;
+  std::vector<openturns::Triangle> parts;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double from = rows[i == 0 ? 0 : i - 1].value, to = rows[std::min(i + 1, rows.size() - 1)].value;
     if (!(rows[i].density > 0)) continue;
-    triangles.add(OT::Triangular(from, rows[i].value, to));
-    shares.add(rows[i].density * (to - from) / 2);
+    parts.push_back({from, rows[i].value, to, rows[i].density * (to - from) / 2});
   }
-  return OT::Mixture(triangles, shares);
+  return openturns::library().triangles(parts);
 }
 
-/// Places 0, 1, ... with the weights of what stands there.
-OT::Distribution places(const std::vector<double>& weights) {
-  OT::Sample support(static_cast<OT::UnsignedInteger>(weights.size()), 1);
-  OT::Point shares(static_cast<OT::UnsignedInteger>(weights.size()));
+/// The shares of what has these weights.
+std::vector<double> shares_of(std::vector<double> weights) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    support(i, 0) = static_cast<double>(i);
-    shares[i] = weights[i] / sum;
-  }
-  return OT::UserDefined(support, shares);
+  for (double& weight : weights) weight /= sum;
+  return weights;
 }
 
 /// What a discrete key chooses from, numbers in growing order, without what has no weight.
@@ -121,17 +100,18 @@ Choices choices_of(const VaryOptions& o) {
   return choices;
 }
 
-OT::Distribution continuous(const VaryOptions& o) {
+AnyLaw continuous(const VaryOptions& o) {
+  const openturns::Library& laws = openturns::library();
   switch (o.distribution) {
-    case Distribution::normal: return cut_off(OT::Normal(*o.mean, *o.deviation), o);
-    case Distribution::lognormal: return cut_off(OT::LogNormalMuSigma(*o.mean, *o.deviation, 0).getDistribution(), o);
-    case Distribution::triangular: return OT::Triangular(*o.low, *o.mode, *o.high);
+    case Distribution::normal: return cut_off(laws.normal(*o.mean, *o.deviation), o);
+    case Distribution::lognormal: return cut_off(laws.lognormal(*o.mean, *o.deviation), o);
+    case Distribution::triangular: return laws.triangular(*o.low, *o.mode, *o.high);
     case Distribution::beta: return beta_of(o);
     case Distribution::table: return tabulated(o);
     case Distribution::uniform:
     case Distribution::discrete: break;
   }
-  return OT::Uniform(*o.low, *o.high);
+  return laws.uniform(*o.low, *o.high);
 }
 
 }  // namespace
@@ -139,33 +119,32 @@ OT::Distribution continuous(const VaryOptions& o) {
 Marginal::Marginal(const VaryOptions& options) {
   if (options.distribution == Distribution::discrete) {
     Choices choices = choices_of(options);
-    law_ = std::make_shared<Law>(Law{places(choices.weights)});
+    law_ = openturns::library().places(shares_of(choices.weights));
     values_ = std::move(choices.values);
     words_ = std::move(choices.words);
     return;
   }
-  law_ = std::make_shared<Law>(Law{continuous(options)});
+  law_ = continuous(options);
 }
 
 double Marginal::quantile(double p) const {
-  const double value = law_->distribution.computeQuantile(p)[0];
+  const double value = law_->quantile(p);
   return values_.empty() ? value : values_.at(static_cast<std::size_t>(std::lround(value)));
 }
 
 double Marginal::mean() const {
-  if (values_.empty()) return law_->distribution.getMean()[0];
+  if (values_.empty()) return law_->mean();
   double sum = 0;
-  for (std::size_t i = 0; i < values_.size(); ++i)
-    sum += values_[i] * law_->distribution.computePDF(static_cast<double>(i));
+  for (std::size_t i = 0; i < values_.size(); ++i) sum += values_[i] * law_->density(static_cast<double>(i));
   return sum;
 }
 
 double Marginal::deviation() const {
-  if (values_.empty()) return law_->distribution.getStandardDeviation()[0];
+  if (values_.empty()) return law_->deviation();
   const double middle = mean();
   double sum = 0;
   for (std::size_t i = 0; i < values_.size(); ++i)
-    sum += (values_[i] - middle) * (values_[i] - middle) * law_->distribution.computePDF(static_cast<double>(i));
+    sum += (values_[i] - middle) * (values_[i] - middle) * law_->density(static_cast<double>(i));
   return std::sqrt(sum);
 }
 

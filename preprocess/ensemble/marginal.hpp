@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The distribution of one key that varies, by OpenTURNS, whose headers stay in marginal.cpp.
+// The distribution of one key that varies.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "common/ensemble/openturns.hpp"
 #include "common/ensemble/options.hpp"
 
 namespace talus::preprocess {
@@ -28,8 +28,7 @@ class Marginal {
   const std::vector<std::string>& words() const { return words_; }
 
  private:
-  struct Law;
-  std::shared_ptr<const Law> law_;
+  openturns::AnyLaw law_;
   std::vector<double> values_;  // of a discrete one, growing
   std::vector<std::string> words_;
 };

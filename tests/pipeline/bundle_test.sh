@@ -35,6 +35,9 @@ test_whole_pipeline_runs_from_a_bundle_that_was_moved() {
     expect_exit 0 env -i moved/bin/talus-$stage recipe.toml --out out
   done
   [[ -s out/score.json && -s out/map.png ]] || fail "no results"
+  printf '%s\n' '[ensemble]' 'members = 2' '[[ensemble.vary]]' 'key = "solve.base.friction_angle_deg"' \
+    'low = 20.0' 'high = 30.0' >>recipe.toml
+  expect_exit 0 env -i moved/bin/talus-preprocess recipe.toml --out ensemble   # it loads OpenTURNS of the bundle
   carries_what_people_need moved
 }
 
@@ -47,7 +50,8 @@ carries_what_people_need() {
   done
   if compgen -G "$1/bin/talus-tests-*" >/dev/null; then fail "the bundle holds tests"; fi
   for library in "$1"/lib/*; do
-    grep -qE "[|,] ${library##*/}[, ]" "$notices/README.md" || fail "no notice names ${library##*/}"
+    [[ $library == */libtalus-* ]] ||
+      grep -qE "[|,] ${library##*/}[, ]" "$notices/README.md" || fail "no notice names ${library##*/}"
   done
   while IFS= read -r file; do
     [[ -s $notices/$file ]] || fail "the list of notices names $file, which is not there"

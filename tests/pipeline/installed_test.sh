@@ -161,18 +161,19 @@ test_packages_ask_for_the_libraries_of_the_programs() {
   expect_exit 0 "$TALUS_SOURCE/tools/make-packages.sh" "$TALUS_BUILD" packages
   local package library held
   package=$(compgen -G 'packages/talus_*.deb' || compgen -G 'packages/talus-gpu_*.deb') || fail "made: $(ls packages)"
-  for library in gdal hdf5 openvdb netcdf cairo tbb cholmod; do
+  for library in gdal hdf5 openvdb netcdf cairo tbb cholmod openturns; do
     dpkg-deb -f "$package" Depends | grep -q "lib$library" || fail "it does not ask for lib$library"
   done
   held=$(dpkg-deb -c "$package" | awk '{ print $6 }')
-  for file in usr/bin/talus-solve usr/share/man/man1/talus-solve.1.gz usr/share/doc/talus/copyright \
-    usr/share/zsh/vendor-completions/_talus-solve \
+  for file in usr/bin/talus-solve usr/lib/talus/libtalus-openturns.so usr/share/man/man1/talus-solve.1.gz \
+    usr/share/doc/talus/copyright usr/share/zsh/vendor-completions/_talus-solve \
     usr/share/talus/pipelines/synthetic-valley/recipe.toml usr/share/talus/styles/thick/deposit_thickness.qml; do
     grep -qE "^\./${file/doc\/talus/doc/talus(-gpu)?}$" <<<"$held" || fail "$package holds no $file"
   done
   if grep -qE 'talus-(tests|validate|bench)' <<<"$held"; then fail "$package holds tests"; fi
   dpkg-deb -x "$package" tree
-  [[ -z $(readelf -d tree/usr/bin/talus-solve | grep -iE 'r(un)?path') ]] || fail "a path of this machine is in it"
+  ! readelf -d tree/usr/bin/talus-solve | grep -iE 'r(un)?path' | grep -qvF ': [$ORIGIN/../lib/talus]' ||
+    fail "a path of this machine is in it"
   dpkg-deb -c packages/talus-doc_*.deb | grep 'usr/share/doc/talus/docs/explanation/theory.md' >found ||
     fail "talus-doc has no documents"
 }

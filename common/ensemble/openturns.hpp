@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What ensembles take of OpenTURNS. It and the forty libraries below it take as long to load as all others together, so
+// that a module of its own (openturns_module.cpp) is loaded with them where a first distribution is asked for.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/ensemble/options.hpp"
+
+namespace talus::openturns {
+
+/// The distribution of one number.
+class Law {
+ public:
+  virtual ~Law() = default;
+  virtual double below(double value) const = 0;    ///< the share that lies at this value and below it
+  virtual double density(double value) const = 0;  ///< of a discrete one the share of this value
+  virtual double quantile(double share) const = 0;
+  virtual double mean() const = 0;
+  virtual double deviation() const = 0;
+  /// What is left of it between two values, one of which may be open.
+  virtual std::shared_ptr<const Law> between(std::optional<double> low, std::optional<double> high) const = 0;
+};
+using AnyLaw = std::shared_ptr<const Law>;
+
+/// A part of a density that is linear between values.
+struct Triangle {
+  double from, top, to;
+  double share;  ///< of the whole
+};
+
+/// Spearman's, of the keys at two places.
+struct RankCorrelation {
+  std::size_t first, second;
+  double value;
+};
+
+/// A normal copula.
+class Copula {
+ public:
+  virtual ~Copula() = default;
+  /// Independent shares 0 < u < 1 become shares that go together, by conditional quantiles (Rosenblatt 1952). The first
+  /// one stays.
+  virtual void bind(std::vector<double>& shares) const = 0;
+};
+
+/// Sobol indices of each input with their 95 % intervals.
+struct SobolIndices {
+  std::vector<double> first, first_low, first_high;
+  std::vector<double> total, total_low, total_high;
+};
+
+using Rows = std::vector<std::vector<double>>;
+
+class Library {
+ public:
+  virtual ~Library() = default;
+  virtual AnyLaw uniform(double low, double high) const = 0;
+  virtual AnyLaw normal(double mean, double deviation) const = 0;
+  virtual AnyLaw lognormal(double mean, double deviation) const = 0;
+  virtual AnyLaw triangular(double low, double mode, double high) const = 0;
+  virtual AnyLaw beta(double mean, double deviation, double low, double high) const = 0;
+  virtual AnyLaw triangles(const std::vector<Triangle>& parts) const = 0;
+  /// Places 0, 1, ... with shares that sum to one.
+  virtual AnyLaw places(const std::vector<double>& shares) const = 0;
+
+  /// Nothing where no such correlations can be together: a matrix, that of the ranks or that of the normal variables,
+  /// is not positive definite.
+  virtual std::shared_ptr<const Copula> copula(std::size_t keys, const std::vector<RankCorrelation>& ranks) const = 0;
+
+  /// `count` members in the unit cube of the keys; with Design::sensitivity count (keys + 2) of them.
+  virtual Rows draw(Design design, std::size_t count, std::size_t keys, unsigned long seed) const = 0;
+
+  /// By Saltelli's estimators (2002, equations 14 and 18). `inputs`: a list of [size (d + 2)] values for each of d
+  /// inputs, whose rows are the sample A, the sample B, and for each input A with that input's values of B. `outputs`
+  /// likewise.
+  virtual SobolIndices sobol_indices(const Rows& inputs, const std::vector<double>& outputs,
+                                     std::size_t size) const = 0;
+  /// Spearman's rank correlation of each input with the output.
+  virtual std::vector<double> rank_correlations(const Rows& inputs, const std::vector<double>& outputs) const = 0;
+  /// Standardised coefficients of a linear regression of the output's ranks on the inputs'. Empty where inputs depend
+  /// on one another linearly.
+  virtual std::vector<double> rank_regression(const Rows& inputs, const std::vector<double>& outputs) const = 0;
+};
+
+/// Loads the module at the first call. Throws DataError where it or a library below it is missing.
+const Library& library();
+
+}  // namespace talus::openturns
