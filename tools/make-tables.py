@@ -48,6 +48,7 @@ CASES = {
     "D2": ("factor of safety with foundation", "Griffiths & Lane (1999)"),
     "D3": ("factor of safety, weak seam", "Giam & Donald (1989)"),
     "D4": ("factor of safety, wedge", "Hoek & Bray (1981)"),
+    "D5": ("factor of safety, undrained vertical cut", "Martin (2011)"),
 }
 
 

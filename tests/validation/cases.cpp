@@ -31,6 +31,7 @@ const std::vector<Case>& cases() {
       {"D2", "the same on a foundation layer", true, slope_on_foundation},
       {"D3", "factor of safety of a slope on a weak seam", true, slope_on_seam},
       {"D4", "factor of safety of a wedge", true, rock_wedge},
+      {"D5", "factor of safety of an undrained vertical cut", true, undrained_cut},
   };
   return list;
 }

@@ -63,5 +63,6 @@ void homogeneous_slope(Bench&);           // D1
 void slope_on_foundation(Bench&);         // D2
 void slope_on_seam(Bench&);               // D3
 void rock_wedge(Bench&);                  // D4
+void undrained_cut(Bench&);               // D5
 
 }  // namespace talus::validation

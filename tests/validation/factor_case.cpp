@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// D1 to D4: factors of safety by strength reduction against published ones.
+// D1 to D5: factors of safety by strength reduction against published ones.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,15 +27,15 @@ void note_effort(Bench& bench, const Outcome& o) {
   bench.note(o, "time [s]", o.ok() ? o.run.summary.wall_time : nothing);
 }
 
-/// The slope of D1 in cells of this width [m].
-Overrides in_cells(double h) {
-  return {{"preprocess.grid.spacing_m", h},
-          {"preprocess.laboratory.cells[0]", whole(std::lround(32 / h) + 8)},
-          {"preprocess.laboratory.corner_m[0]", -3.5 * h},
-          {"preprocess.laboratory.corner_m[1]", -2.5 * h},
-          {"preprocess.box[0].extent_m[3]", h},
-          {"preprocess.box[1].extent_m[3]", h},
-          {"solve.wall[2].position_m", h}};
+/// The strip of a recipe with this length [m] and number of boxes in cells of this width [m].
+Overrides in_cells(double h, double length, int boxes) {
+  Overrides changes{{"preprocess.grid.spacing_m", h},
+                    {"preprocess.laboratory.cells[0]", whole(std::lround(length / h) + 8)},
+                    {"preprocess.laboratory.corner_m[0]", -3.5 * h},
+                    {"preprocess.laboratory.corner_m[1]", -2.5 * h},
+                    {"solve.wall[2].position_m", h}};
+  for (int n = 0; n < boxes; ++n) changes.push_back({fmt::format("preprocess.box[{}].extent_m[3]", n), h});
+  return changes;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ void homogeneous_slope(Bench& bench) {
   // Griffiths & Lane 1999: 1.4 by finite elements; Bishop & Morgenstern 1960: 1.380 by slices.
   constexpr double chart = 1.380, elements = 1.4;
   const double h = bench.coarse() ? 1 : 0.5, tolerance = bench.coarse() ? 0.03 : 0.02;
-  const Outcome dry = bench.run(fmt::format("dry, {:g} cells over the height", 10 / h), in_cells(h));
+  const Outcome dry = bench.run(fmt::format("dry, {:g} cells over the height", 10 / h), in_cells(h, 32, 2));
   bench.compare(dry, "factor against the charts of Bishop & Morgenstern", factor_of(dry), chart, tolerance);
   bench.compare(dry, "factor against Griffiths & Lane's elements", factor_of(dry), elements, tolerance);
   note_effort(bench, dry);
@@ -55,6 +55,17 @@ void homogeneous_slope(Bench& bench) {
   const Outcome wet = bench.run(fmt::format("r_u = {:g}", ratio), {{"solve.material.pore_pressure_ratio", ratio}});
   bench.compare(wet, "factor against slices with r_u", factor_of(wet), slices, tolerance);
   note_effort(bench, wet);
+}
+
+void undrained_cut(Bench& bench) {
+  // Martin 2011: rho g H / c = 3.7765 as slip lines and adaptive limit analysis have it.
+  const double exact = 3.7765 * 50000 / (2000 * 9.81 * 10);
+  for (const auto& [h, tolerance] : {std::pair{1.0, 0.05}, {0.5, 0.02}}) {
+    const Outcome o = bench.run(fmt::format("{:g} cells over the height", 10 / h), in_cells(h, 20, 1));
+    bench.compare(o, "factor", factor_of(o), exact, tolerance);
+    note_effort(bench, o);
+    if (bench.coarse()) return;
+  }
 }
 
 void slope_on_foundation(Bench& bench) {

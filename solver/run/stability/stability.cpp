@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,6 +26,13 @@ constexpr int fall_steps = 8;
 /// The kinetic energy at the end over that at half time from which on the mass moves: a free one has four times as
 /// much, one that finds a new equilibrium less than before.
 constexpr double growing = 2;
+
+/// The strength that the ground is given, over its own, for the way that it goes while nothing in it yields.
+constexpr double sound = 1e3;
+/// The largest way of an equilibrium, over that one: beyond it the ground has slumped into another shape (T40c).
+constexpr double slumped = 10;
+/// The share of the ground that goes farther than what counts as its way: some loose points at a rim are no slump.
+constexpr double loose = 0.01;
 
 /// The function steps to a time and adds up the iterations.
 StepStats advance_to(Solver& solver, double time) {
@@ -69,6 +78,9 @@ double way_of_what_moves(const std::vector<double>& way, const std::vector<doubl
 }
 
 std::string words(const StabilityTrial& t) {
+  if (!t.holds && t.way > 0)
+    return fmt::format("strength / {:.4g}: no equilibrium of this shape (farthest point {:.3g} m from where it was)",
+                       t.factor, t.way);
   if (!t.holds) return fmt::format("strength / {:.4g}: no equilibrium", t.factor);
   if (t.by_motion) return fmt::format("strength / {:.4g}: no equilibrium found, but let go the ground stays", t.factor);
   return fmt::format(
@@ -99,6 +111,8 @@ Stability StabilitySearch::run() {
     log_info(words(trial));
     return trial.holds;
   };
+  StabilityTrial trial;
+  if (const auto state = rest(1 / sound, nullptr, trial)) most_way_ = slumped * way_of(*state, loose);
   const FactorBounds bounds{.tolerance = options_.stability.tolerance, .largest = options_.stability.largest_factor};
   found.factor = bracket_factor(holds, bounds);
   if (!found.factor.closed()) return found;
@@ -152,8 +166,9 @@ StabilityTrial StabilitySearch::attempt(double factor) {
 /// The method takes note of an equilibrium; it returns false where there is none.
 bool StabilitySearch::keep(std::optional<SolverState> state, StabilityTrial& trial) {
   if (!state) return false;
-  trial.holds = true;
-  trial.way = farthest(*state);
+  trial.way = way_of(*state, 0);
+  trial.holds = way_of(*state, loose) <= most_way_;
+  if (!trial.holds) return false;
   if (trial.factor > held_factor_) {
     held_ = std::move(*state);
     held_factor_ = trial.factor;
@@ -200,13 +215,19 @@ Failure StabilitySearch::fail(double factor) {
   return failure;
 }
 
-/// How far the farthest point is from its seed [m].
-double StabilitySearch::farthest(const SolverState& state) const {
+/// The way from their seeds that all points but this share of the volume stay below, or go at most [m].
+double StabilitySearch::way_of(const SolverState& state, double share) const {
   const auto now = positions(scene_, state.points);
-  double way = 0;
-  for (std::size_t p = 0; p < now.size(); ++p)
-    way = std::max(way, distance(now[p], seeds_[static_cast<std::size_t>(state.points.id[p])]));
-  return way;
+  std::vector<std::pair<double, double>> ways;  // with the volume that goes them
+  double left = 0;
+  for (std::size_t p = 0; p < now.size(); ++p) {
+    ways.emplace_back(distance(now[p], seeds_[static_cast<std::size_t>(state.points.id[p])]), state.points.volume[p]);
+    left += share * state.points.volume[p];
+  }
+  std::ranges::sort(ways, std::greater());
+  for (const auto& [way, volume] : ways)
+    if ((left -= volume) < 0) return way;
+  return 0;
 }
 
 }  // namespace talus::solver

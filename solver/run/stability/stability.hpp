@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct StabilityTrial {
   double factor = 0;
   bool holds = false;
   std::int64_t newton = 0, linear = 0;  ///< iterations; 0 where none was found
-  double way = 0;                       ///< of the farthest point from where it was without weight [m]; 0: none found
+  double way = 0;                       ///< of the farthest point from where it was without weight [m]; 0: none found.
+                                        ///< Where it does not hold: too far for the same shape (T40c)
   bool by_motion = false;               ///< Newton's iterations found none, but the ground let go stays
 };
 
@@ -65,7 +67,7 @@ class StabilitySearch {
   bool keep(std::optional<SolverState> state, StabilityTrial& trial);
   void look_again(StabilityTrial& trial);
   Failure fail(double factor);
-  double farthest(const SolverState& state) const;
+  double way_of(const SolverState& state, double share) const;
 
   const Domain& domain_;
   double stiffening_;
@@ -75,6 +77,7 @@ class StabilitySearch {
   std::vector<std::array<double, 3>> seeds_;  ///< positions of the points, by id [m]
   SolverState held_;                          ///< the equilibrium of the largest factor that held
   double held_factor_ = 0;
+  double most_way_ = std::numeric_limits<double>::infinity();  ///< in an equilibrium of this shape [m]
   Failure nearest_;       ///< of the least factor at which a second look found no equilibrium
   bool trusting_ = true;  ///< Newton's iterations have not yet missed an equilibrium that is there
 };

@@ -129,6 +129,34 @@ TEST(Stability, of_a_homogeneous_slope_is_that_of_griffiths_and_lane) {
   EXPECT_LT(thickness(2), 0.1) << "far behind the crest";
 }
 
+/// A vertical cut in clay without friction, which slumps where it fails and rests again.
+TEST(Stability, of_a_cut_that_slumps_is_that_of_the_closed_form) {
+  HomogeneousSlope s;
+  SeedPoints& points = s.domain.points;
+  points = {};
+  const double half = HomogeneousSlope::cell / 2, west = 3.5 * HomogeneousSlope::cell;
+  for (int n = 0; (n + 0.5) * half < 2 * s.height; ++n) s.fill_column(west + n * half, 2.5 * s.cell, s.height);
+  s.options.material.friction_angle = 0;
+  s.options.material.cohesion = 50000;
+  s.options.stability.tolerance = 0.01;
+  const Stability found = StabilitySearch(s.domain, s.options, CpuDevice::make()).run();
+  ASSERT_TRUE(found.factor.closed());
+  // Martin 2011: rho g H / c = 3.7765. What fails is as high as the cut to a cell, and F goes with one over the height.
+  const double exact = 3.7765 * 50000 / (2000 * 9.81 * s.height);
+  EXPECT_NEAR(found.factor.middle() / exact, 1, s.cell / s.height);
+  EXPECT_TRUE(found.failure.moves);
+  bool slumped = false;
+  for (const StabilityTrial& trial : found.trials) {
+    EXPECT_EQ(trial.holds, trial.factor <= found.factor.low) << trial.factor;
+    if (trial.holds) {
+      EXPECT_LT(trial.way, 0.01 * s.height) << trial.factor;
+    } else {
+      slumped = slumped || trial.way > 0;
+    }
+  }
+  EXPECT_TRUE(slumped) << "a trial of this scene ends in another shape";
+}
+
 TEST(Stability, is_refused_where_there_is_nothing_to_divide) {
   const auto faults_of = [](const SolveOptions& options) {
     std::vector<Fault> faults;
