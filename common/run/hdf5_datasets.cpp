@@ -50,6 +50,7 @@ void File::write_raw(const std::string& path, const Dims& dims, hid_t type, cons
 }
 
 hid_t File::create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type) {
+  // A chunk is packed when it is full: one of 64 appends is seldom packed twice, and a short list is still small.
   Dims dims{0}, limit{H5S_UNLIMITED}, whole{std::clamp<hsize_t>(64 * rows, 1 << 10, 1 << 15)};
   dims.insert(dims.end(), row.begin(), row.end());
   limit.insert(limit.end(), row.begin(), row.end());

@@ -107,20 +107,20 @@ Slide from_scenario(const ScenarioOptions& scenario, Layers& layers, std::vector
 
 /// Each slide must say how much is released, in a way that the model can take.
 void check_amount(const Slide& slide, ModelIs model, std::vector<Fault>& faults) {
-  const auto sets = [&](std::string_view key) {
-    return std::ranges::any_of(slide.set, [&](const auto& one) { return one.first == key; });
-  };
   const bool onto = model == ModelIs::base;
   for (const char* key : cut_keys)
-    if (onto && sets(key))
+    if (onto && slide.sets(key))
       faults.push_back({fmt::format("{}: {}, with base_dem", slide.place, key),
                         "what is released lies on base_dem, and has a thickness",
                         fmt::format("Set {} or {}, or give the model as before_dem", thickness_key, volume_key)});
-  if (const char* given = sets(thickness_key) ? thickness_key : sets(volume_key) ? volume_key : nullptr; given && !onto)
+  if (const char* given = slide.sets(thickness_key) ? thickness_key
+                          : slide.sets(volume_key)  ? volume_key
+                                                    : nullptr;
+      given && !onto)
     faults.push_back({fmt::format("{}: {}, with before_dem", slide.place, given),
                       "what fails there lies above a curved sliding surface, and has a largest depth",
                       fmt::format("Set {} or {}, or give the model as base_dem", cut_keys[0], cut_keys[1])});
-  if (onto && !sets(thickness_key) && !sets(volume_key) && faults.empty())
+  if (onto && !slide.sets(thickness_key) && !slide.sets(volume_key) && faults.empty())
     faults.push_back({slide.place + ": no thickness", "nothing says how much is released",
                       fmt::format("Set {} or {}, in [[slides.set]] by an attribute, in [[slides.scenario]] by set",
                                   thickness_key, volume_key)});

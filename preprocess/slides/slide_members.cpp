@@ -48,8 +48,7 @@ std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapG
   if (model == ModelIs::base) {
     std::vector<MapPolygon> turned = slide.outline;
     check_polygons(turned, slide.place);
-    const bool by_volume = std::ranges::any_of(slide.set, [](const auto& one) { return one.first == volume_key; });
-    values.push_back(release_of(slide.source, by_volume ? "volume_m3" : "thickness_m"));
+    values.push_back(release_of(slide.source, slide.sets(volume_key) ? "volume_m3" : "thickness_m"));
   } else {
     values.push_back(source_of(slide.source));
   }

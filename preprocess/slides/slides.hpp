@@ -4,6 +4,7 @@
 // their domains.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -48,6 +49,10 @@ struct Slide {
   std::filesystem::path source;                          ///< its polygons in a vector file
   std::vector<MapPolygon> outline;                       ///< these, in the CRS of the model
   std::vector<std::pair<std::string, std::string>> set;  ///< keys of the recipe and their values
+
+  bool sets(std::string_view key) const {
+    return std::ranges::any_of(set, [&](const auto& one) { return one.first == key; });
+  }
 };
 
 /// The slides that a recipe lists, in the order of layer and list; every layer is read once. Throws DataError and
