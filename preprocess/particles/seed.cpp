@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/map/statistics.hpp"
 #include "preprocess/particles/shift.hpp"
@@ -14,6 +15,7 @@ namespace talus::preprocess {
 namespace {
 
 constexpr double most = std::numeric_limits<int>::max();
+constexpr double least_share = 0.1;  // of the volume of a point beside it
 
 struct Counts {
   int x, y, z;
@@ -51,6 +53,47 @@ void seed_column(const Column& column, const Seeding& s, Shift& shift, SeedPoint
   }
 }
 
+double volume_of_point(double thickness, double cell, const Seeding& s) {
+  return thickness * cell * cell / static_cast<double>(counts_for(thickness, s).all());
+}
+
+/// The thickness of which columns are made: a cell whose points would be slivers beside those of its thickest neighbour
+/// gives all that it has to its thicker neighbours, in proportion to their thickness. So a mirrored release is seeded
+/// as the mirror image.
+Raster without_slivers(const Raster& thickness, const Seeding& s) {
+  const double cell = thickness.grid.cell;
+  std::vector<std::size_t> covered;
+  for (std::size_t i = 0; i < thickness.values.size(); ++i)
+    if (thickness.values[i] > 0) covered.push_back(i);
+  std::stable_sort(covered.begin(), covered.end(),
+                   [&](auto a, auto b) { return thickness.values[a] < thickness.values[b]; });
+  Raster columns = thickness;
+  for (const std::size_t place : covered) {  // the thinnest first: what they give may be given on
+    const double own = thickness.values[place];
+    double thickest = own, sum = 0;
+    const auto each_thicker = [&](const auto& visit) {
+      each_near(thickness.grid, thickness.grid.cell_of(place), 1, [&](int column, int row) {
+        const std::size_t other = thickness.grid.index(column, row);
+        if (thickness.values[other] > own) visit(other, thickness.values[other]);
+      });
+    };
+    each_thicker([&](std::size_t, double t) {
+      thickest = std::max(thickest, t);
+      sum += t;
+    });
+    if (volume_of_point(own, cell, s) >= least_share * volume_of_point(thickest, cell, s)) continue;
+    const double given = std::exchange(columns.values[place], 0);
+    each_thicker([&](std::size_t other, double t) { columns.values[other] += given * t / sum; });
+  }
+  return columns;
+}
+
+std::vector<Raster> without_slivers(const std::vector<Release>& releases, const Seeding& s) {
+  std::vector<Raster> columns;
+  for (const Release& release : releases) columns.push_back(without_slivers(release.thickness, s));
+  return columns;
+}
+
 void reserve(SeedPoints& points, std::size_t count) {
   for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y})
     values->reserve(count);
@@ -73,8 +116,8 @@ Seeding seeding_of(const GridOptions& options, double layer_height) {
 
 std::size_t count_points(const std::vector<Release>& releases, const Seeding& seeding) {
   double count = 0;  // exact up to 2^53, and beyond all that can be counted before it overflows
-  for (const Release& release : releases) {
-    for (double t : release.thickness.values) {
+  for (const Raster& thickness : without_slivers(releases, seeding)) {
+    for (double t : thickness.values) {
       if (!(t > 0)) continue;
       const Counts n = counts_for(t, seeding);
       count += static_cast<double>(n.x) * n.y * n.z;
@@ -87,13 +130,14 @@ SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seed
   SeedPoints points;
   reserve(points, count_points(releases, seeding));
   if (releases.empty()) return points;
-  const MapGrid& grid = releases.front().thickness.grid;
+  const std::vector<Raster> columns = without_slivers(releases, seeding);
+  const MapGrid& grid = columns.front().grid;
   Shift shift(seeding.jitter);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       double foot = 0;
-      for (std::size_t r = 0; r < releases.size(); ++r) {
-        const double t = releases[r].thickness.at(column, row);
+      for (std::size_t r = 0; r < columns.size(); ++r) {
+        const double t = columns[r].at(column, row);
         if (!(t > 0)) continue;
         seed_column(
             {grid.west + column * grid.cell, grid.south + row * grid.cell, grid.cell, foot, t, static_cast<int>(r)},

@@ -32,6 +32,10 @@ std::size_t count_points(const std::vector<Release>& releases, const Seeding& se
 /// A column of vertical thickness T over a cell of side h gets n_x n_y n_z points of volume T h^2 / (n_x n_y n_z) each,
 /// n_z = max(1, round(T / h_z * in_height)), evenly spaced: so the volumes sum to that of the rasters to rounding,
 /// whatever the points per cell. Releases in one cell lie on one another, the first lowest.
+///
+/// A cell that a release covers so thinly, as at its rim, that its points would hold less than a tenth of those of the
+/// thickest of its eight neighbours, gives its volume to the thicker ones of them: heavy points beside it would squash
+/// such a point, whatever its own stress, until that stress throws it out.
 SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seeding);
 
 }  // namespace talus::preprocess

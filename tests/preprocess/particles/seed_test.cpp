@@ -83,6 +83,68 @@ TEST(seed, keeps_the_volume_of_every_column) {
   for (std::size_t i = 0; i < volume.size(); ++i) EXPECT_NEAR(volume[i], release.thickness.values[i] * 100, 1e-9);
 }
 
+std::vector<double> volumes_by_cell(const MapGrid& grid, const SeedPoints& points) {
+  std::vector<double> volume(grid.count(), 0.0);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    volume[grid.index(static_cast<int>((points.x[p] - grid.west) / grid.cell),
+                      static_cast<int>((points.y[p] - grid.south) / grid.cell))] += points.volume[p];
+  return volume;
+}
+
+TEST(seed, gives_what_would_be_slivers_to_thicker_columns_beside_them) {
+  const MapGrid grid = test::grid_of(4, 3, 1, 0, 0);
+  Release release{"A", test::raster_of(grid, [](double, double) { return 0.0; })};
+  release.thickness.values = {2, 0.3,  0,      0,  //
+                              2, 0.15, 0.0005, 0,  //
+                              2, 0.01, 0,      0.001};
+  const SeedPoints points = seed_points({release}, seeding(1, 1, 1, 2));
+  const std::vector<double> volume = volumes_by_cell(grid, points);
+  EXPECT_NEAR(volume_of_points(points), test::volume_of(release.thickness), 1e-12);
+  // Each gives to all that are thicker, and hands on what it got: 0.0005 to 0.3, 0.15, 0.01 and 0.001, 0.01 to 2, 2 and
+  // 0.15, and 0.15 to 2, 2, 2 and 0.3.
+  const double first = 0.0005 / 0.461, second = (0.01 + first * 0.01) / 4.15,
+               third = (0.15 * (1 + first + second)) / 6.3;
+  EXPECT_NEAR(volume[11], 0.001 * (1 + first), 1e-12) << "nothing thicker is beside it";
+  EXPECT_NEAR(volume[1], 0.3 * (1 + first + third), 1e-12) << "thick enough to stay";
+  EXPECT_NEAR(volume[0], 2 * (1 + third), 1e-12);
+  EXPECT_NEAR(volume[8], 2 * (1 + second + third), 1e-12);
+  for (const std::size_t i : {5U, 6U, 9U}) EXPECT_EQ(volume[i], 0) << i;
+  EXPECT_EQ(points.size(), count_points({release}, seeding(1, 1, 1, 2)));
+}
+
+/// A polygon's rim covers cells in part, by any share.
+TEST(seed, leaves_no_sliver_beside_a_thick_column) {
+  TALUS_SEEDED(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (const double thickness : {0.2, 1.5, 30.0}) {
+    const MapGrid grid = test::grid_of(30, 30, 5, 0, 0);
+    const Release release{"A", test::raster_of(grid, [&](double x, double y) {
+                            const double beyond = std::hypot(x - 75, y - 75) - 50;
+                            return thickness * (beyond < -5 ? 1 : beyond < 0 ? std::pow(share(random), 3) : 0);
+                          })};
+    for (const double layer_height : {0.1, 0.8, 5.0}) {
+      const Seeding s = seeding(2, 2, 2, layer_height);
+      const SeedPoints points = seed_points({release}, s);
+      std::vector<double> largest(grid.count(), 0.0);
+      const auto cell_of = [&](std::size_t p) {
+        return std::pair{static_cast<int>(points.x[p] / grid.cell), static_cast<int>(points.y[p] / grid.cell)};
+      };
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        const auto [i, j] = cell_of(p);
+        largest[grid.index(i, j)] = points.volume[p];
+      }
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        const auto [i, j] = cell_of(p);
+        each_near(grid, {i, j}, 1, [&](int x, int y) {
+          EXPECT_GE(points.volume[p], 0.05 * largest[grid.index(x, y)]) << thickness << " " << layer_height;
+        });
+      }
+      EXPECT_NEAR(volume_of_points(points) / test::volume_of(release.thickness), 1, 1e-12);
+    }
+  }
+}
+
 TEST(seed, spaces_points_evenly) {
   const Release release{"A", test::raster_of(test::grid_of(1, 1, 10, 0, 0), [](double, double) { return 6.0; })};
   const SeedPoints points = seed_points({release}, seeding(2, 1, 2, 4));  // 6 m / 4 m * 2 = 3 points in height
