@@ -85,6 +85,7 @@ SpeedBound speed_bound(const Domain& domain, const SolveOptions& o, const Scene&
   const double start = o.initial_speed();
   bound.fall = std::sqrt(2 * g * bound.line.largest_head(domain.terrain));
   bound.speed = bound.fall + start + scene.shaking.velocity_range();
+  for (const double height : domain.points.height) bound.depth = std::max(bound.depth, height);
   return bound;
 }
 

@@ -21,11 +21,13 @@ struct EnergyLine {
   double largest_head(const Raster& terrain) const;
 };
 
-/// What bounds the speed of a flow: the energy line, the speed at the start and the shaking.
+/// What bounds the speed of a flow: the energy line, the speed at the start and the shaking; and its depth at the
+/// start.
 struct SpeedBound {
   EnergyLine line;
   double fall = 0;   ///< that the energy line allows somewhere in the domain [m/s]
   double speed = 0;  ///< with the speed at the start and the range of the ground's own velocity [m/s]
+  double depth = 0;  ///< of the highest point of what is released, above the bed [m]
 };
 
 /// The energy line of a domain and of what enters it.

@@ -15,10 +15,15 @@ StiffnessDemand lowest_stiffness(const SolveOptions& o, const SpeedBound& bound)
   const double wave_speed = make_material<double>(m).wave_speed;
   const double confined =
       m.density * wave_speed * wave_speed / m.youngs_modulus;  // modulus of confined compression over Young's
-  const double needed = m.density * bound.speed * bound.speed / m.stiffness_strain / confined;
+  const double under_weight = std::min(m.stiffness_strain, o.accuracy.value_or(1)) / 2;
+  const double for_speed = m.density * bound.speed * bound.speed / m.stiffness_strain / confined,
+               for_weight = m.density * o.gravity_size() * bound.depth / under_weight / confined;
+  const double needed = std::max(for_speed, for_weight);
   const std::string why =
-      fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line{}, strains it by {:.3g} %", bound.speed,
-                  o.shaking.acts() ? " and the shaking allow" : " allows", 100 * m.stiffness_strain);
+      for_speed < for_weight
+          ? fmt::format("the weight of {:.3g} m strains it by {:.3g} %", bound.depth, 100 * under_weight)
+          : fmt::format("the dynamic pressure at {:.3g} m/s, which the energy line{}, strains it by {:.3g} %",
+                        bound.speed, o.shaking.acts() ? " and the shaking allow" : " allows", 100 * m.stiffness_strain);
   demand.modulus = std::min(needed, m.youngs_modulus);
   demand.reason =
       needed < m.youngs_modulus ? why : fmt::format("it is no more than is needed: at {:.3g} Pa {}", needed, why);

@@ -223,6 +223,25 @@ TEST(Stiffness, carries_the_weight_of_a_deep_release) {
   EXPECT_LT(2000 * 9.81 * 300 / (1.2 * demand.modulus), 0.01);
 }
 
+/// A column as high as it is wide hardly falls: its own weight decides.
+TEST(Stiffness, leaves_a_column_its_height) {
+  Domain d = ground(40, 40, 0.1, 0.1, [](double, double) { return 0.0; });
+  for (int row = 18; row < 22; ++row)
+    for (int column = 18; column < 22; ++column) d.release_thickness.at(column, row) = 0.4;
+  fill(d, {1.8, 2.2, 1.8, 2.2, 0, 0.4});
+  for (const double accuracy : {0.05, 0.02, 0.01}) {
+    SolveOptions o = chosen_at(accuracy);
+    o.material.youngs_modulus = 1e9;
+    std::vector<std::string> reasons;
+    const SolveOptions soft = settle_stiffness(o, begun(d, o).bound, reasons);
+    const double confined = make_material<double>(soft.material).wave_speed;
+    EXPECT_LE(9.81 * 0.375 / (confined * confined), 0.5 * accuracy * (1 + 1e-9));
+    EXPECT_LT(soft.material.youngs_modulus, 1e9);
+    ASSERT_FALSE(reasons.empty());
+    EXPECT_NE(reasons[0].find("the weight of 0.375 m"), std::string::npos) << "its highest points: " << reasons[0];
+  }
+}
+
 TEST(Stiffness, is_never_more_than_the_recipe_gives) {
   const StiffnessDemand demand = lowest_stiffness(sliding(1e6), begun(slope(20), sliding(1e6)).bound);
   EXPECT_EQ(demand.modulus, 1e6);
