@@ -94,6 +94,18 @@ std::vector<Raster> without_slivers(const std::vector<Release>& releases, const 
   return columns;
 }
 
+double count_of(const std::vector<Raster>& columns, const Seeding& s) {
+  double count = 0;  // exact up to 2^53, and beyond all that can be counted before it overflows
+  for (const Raster& thickness : columns) {
+    for (const double t : thickness.values) {
+      if (!(t > 0)) continue;
+      const Counts n = counts_for(t, s);
+      count += static_cast<double>(n.x) * n.y * n.z;
+    }
+  }
+  return std::min(count, 1e18);
+}
+
 void reserve(SeedPoints& points, std::size_t count) {
   for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y})
     values->reserve(count);
@@ -115,22 +127,14 @@ Seeding seeding_of(const GridOptions& options, double layer_height) {
 }
 
 std::size_t count_points(const std::vector<Release>& releases, const Seeding& seeding) {
-  double count = 0;  // exact up to 2^53, and beyond all that can be counted before it overflows
-  for (const Raster& thickness : without_slivers(releases, seeding)) {
-    for (double t : thickness.values) {
-      if (!(t > 0)) continue;
-      const Counts n = counts_for(t, seeding);
-      count += static_cast<double>(n.x) * n.y * n.z;
-    }
-  }
-  return static_cast<std::size_t>(std::min(count, 1e18));
+  return static_cast<std::size_t>(count_of(without_slivers(releases, seeding), seeding));
 }
 
 SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seeding) {
   SeedPoints points;
-  reserve(points, count_points(releases, seeding));
   if (releases.empty()) return points;
   const std::vector<Raster> columns = without_slivers(releases, seeding);
+  reserve(points, static_cast<std::size_t>(count_of(columns, seeding)));
   const MapGrid& grid = columns.front().grid;
   Shift shift(seeding.jitter);
   for (int row = 0; row < grid.rows; ++row) {

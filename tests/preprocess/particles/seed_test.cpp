@@ -64,6 +64,18 @@ TEST(default_layer_height, is_half_the_thickness_of_most_of_the_volume) {
   EXPECT_DOUBLE_EQ(default_layer_height(of([](double, double) { return 0.0; }), 20), 20) << "nothing released";
 }
 
+/// The cell that a point stands in.
+std::size_t cell_of(const MapGrid& grid, const SeedPoints& points, std::size_t p) {
+  return grid.index(static_cast<int>((points.x[p] - grid.west) / grid.cell),
+                    static_cast<int>((points.y[p] - grid.south) / grid.cell));
+}
+
+std::vector<double> volumes_by_cell(const MapGrid& grid, const SeedPoints& points) {
+  std::vector<double> volume(grid.count(), 0.0);
+  for (std::size_t p = 0; p < points.size(); ++p) volume[cell_of(grid, points, p)] += points.volume[p];
+  return volume;
+}
+
 TEST(seed, keeps_the_volume_of_every_column) {
   TALUS_SEEDED(seed);
   std::mt19937 random(seed);
@@ -72,23 +84,12 @@ TEST(seed, keeps_the_volume_of_every_column) {
   Seeding s = seeding(3, 2, 2, 4);
   s.jitter = 0.5;
   const SeedPoints points = seed_points({release}, s);
-  std::vector<double> volume(grid.count(), 0.0);
+  const std::vector<double> volume = volumes_by_cell(grid, points);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const int column = static_cast<int>((points.x[p] - grid.west) / grid.cell),
-              row = static_cast<int>((points.y[p] - grid.south) / grid.cell);
-    volume[grid.index(column, row)] += points.volume[p];
     EXPECT_GE(points.height[p], 0);
-    EXPECT_LE(points.height[p], release.thickness.at(column, row));
+    EXPECT_LE(points.height[p], release.thickness.values[cell_of(grid, points, p)]);
   }
   for (std::size_t i = 0; i < volume.size(); ++i) EXPECT_NEAR(volume[i], release.thickness.values[i] * 100, 1e-9);
-}
-
-std::vector<double> volumes_by_cell(const MapGrid& grid, const SeedPoints& points) {
-  std::vector<double> volume(grid.count(), 0.0);
-  for (std::size_t p = 0; p < points.size(); ++p)
-    volume[grid.index(static_cast<int>((points.x[p] - grid.west) / grid.cell),
-                      static_cast<int>((points.y[p] - grid.south) / grid.cell))] += points.volume[p];
-  return volume;
 }
 
 TEST(seed, gives_what_would_be_slivers_to_thicker_columns_beside_them) {
@@ -127,16 +128,9 @@ TEST(seed, leaves_no_sliver_beside_a_thick_column) {
       const Seeding s = seeding(2, 2, 2, layer_height);
       const SeedPoints points = seed_points({release}, s);
       std::vector<double> largest(grid.count(), 0.0);
-      const auto cell_of = [&](std::size_t p) {
-        return std::pair{static_cast<int>(points.x[p] / grid.cell), static_cast<int>(points.y[p] / grid.cell)};
-      };
+      for (std::size_t p = 0; p < points.size(); ++p) largest[cell_of(grid, points, p)] = points.volume[p];
       for (std::size_t p = 0; p < points.size(); ++p) {
-        const auto [i, j] = cell_of(p);
-        largest[grid.index(i, j)] = points.volume[p];
-      }
-      for (std::size_t p = 0; p < points.size(); ++p) {
-        const auto [i, j] = cell_of(p);
-        each_near(grid, {i, j}, 1, [&](int x, int y) {
+        each_near(grid, grid.cell_of(cell_of(grid, points, p)), 1, [&](int x, int y) {
           EXPECT_GE(points.volume[p], 0.05 * largest[grid.index(x, y)]) << thickness << " " << layer_height;
         });
       }
