@@ -54,7 +54,7 @@ struct SobolIndices {
   std::vector<double> total, total_low, total_high;
 };
 
-using Rows = std::vector<std::vector<double>>;
+using Lists = std::vector<std::vector<double>>;
 
 class Library {
  public:
@@ -73,18 +73,18 @@ class Library {
   virtual std::shared_ptr<const Copula> copula(std::size_t keys, const std::vector<RankCorrelation>& ranks) const = 0;
 
   /// `count` members in the unit cube of the keys; with Design::sensitivity count (keys + 2) of them.
-  virtual Rows draw(Design design, std::size_t count, std::size_t keys, unsigned long seed) const = 0;
+  virtual Lists draw(Design design, std::size_t count, std::size_t keys, unsigned long seed) const = 0;
 
   /// By Saltelli's estimators (2002, equations 14 and 18). `inputs`: a list of [size (d + 2)] values for each of d
   /// inputs, whose rows are the sample A, the sample B, and for each input A with that input's values of B. `outputs`
   /// likewise.
-  virtual SobolIndices sobol_indices(const Rows& inputs, const std::vector<double>& outputs,
+  virtual SobolIndices sobol_indices(const Lists& inputs, const std::vector<double>& outputs,
                                      std::size_t size) const = 0;
   /// Spearman's rank correlation of each input with the output.
-  virtual std::vector<double> rank_correlations(const Rows& inputs, const std::vector<double>& outputs) const = 0;
+  virtual std::vector<double> rank_correlations(const Lists& inputs, const std::vector<double>& outputs) const = 0;
   /// Standardised coefficients of a linear regression of the output's ranks on the inputs'. Empty where inputs depend
   /// on one another linearly.
-  virtual std::vector<double> rank_regression(const Rows& inputs, const std::vector<double>& outputs) const = 0;
+  virtual std::vector<double> rank_regression(const Lists& inputs, const std::vector<double>& outputs) const = 0;
 };
 
 /// Loads the module at the first call. Throws DataError where it or a library below it is missing.

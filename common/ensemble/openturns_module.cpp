@@ -40,7 +40,7 @@ OT::Point point_of(const std::vector<double>& values) {
 
 std::vector<double> list_of(const OT::Point& point) { return {point.begin(), point.end()}; }
 
-OT::Sample sample_of(const Rows& columns) {
+OT::Sample sample_of(const Lists& columns) {
   OT::Sample sample(columns.front().size(), columns.size());
   for (std::size_t n = 0; n < columns.size(); ++n)
     for (std::size_t k = 0; k < columns[n].size(); ++k) sample(k, n) = columns[n][k];
@@ -148,16 +148,16 @@ class Module : public Library {
     }
   }
 
-  Rows draw(Design design, std::size_t count, std::size_t keys, unsigned long seed) const override {
+  Lists draw(Design design, std::size_t count, std::size_t keys, unsigned long seed) const override {
     OT::TBB::Disable();  // so that the order of draws is one
     OT::RandomGenerator::SetSeed(seed);
     const OT::Sample sample = drawn(design, count, keys);
-    Rows members;
+    Lists members;
     for (std::size_t k = 0; k < sample.getSize(); ++k) members.push_back(list_of(OT::Point(sample[k])));
     return members;
   }
 
-  SobolIndices sobol_indices(const Rows& inputs, const std::vector<double>& outputs, std::size_t size) const override {
+  SobolIndices sobol_indices(const Lists& inputs, const std::vector<double>& outputs, std::size_t size) const override {
     OT::RandomGenerator::SetSeed(0);  // the intervals are bootstrapped: the same ones every time
     const OT::SaltelliSensitivityAlgorithm algorithm(sample_of(inputs), sample_of({outputs}), size);
     const OT::Interval first = algorithm.getFirstOrderIndicesInterval(),
@@ -166,11 +166,11 @@ class Module : public Library {
             list_of(algorithm.getTotalOrderIndices()), list_of(total.getLowerBound()), list_of(total.getUpperBound())};
   }
 
-  std::vector<double> rank_correlations(const Rows& inputs, const std::vector<double>& outputs) const override {
+  std::vector<double> rank_correlations(const Lists& inputs, const std::vector<double>& outputs) const override {
     return list_of(OT::CorrelationAnalysis(sample_of(inputs), sample_of({outputs})).computeSpearmanCorrelation());
   }
 
-  std::vector<double> rank_regression(const Rows& inputs, const std::vector<double>& outputs) const override {
+  std::vector<double> rank_regression(const Lists& inputs, const std::vector<double>& outputs) const override {
     try {
       auto found = list_of(OT::CorrelationAnalysis(sample_of(inputs), sample_of({outputs})).computeSRRC());
       for (const double value : found)

@@ -18,9 +18,9 @@ struct StiffnessDemand {
 };
 
 /// The modulus that keeps the dynamic pressure at the highest speed to a strain of `stiffness_strain`, and the weight
-/// of the thickest release to half of that, or to half of the recipe's `accuracy` where that is less: what weight
-/// strains is missing in the thickness of the deposit. Never more than the recipe's own. Pressures are over the modulus
-/// of confined compression.
+/// below the highest point of what is released to half of that, or to half of the recipe's `accuracy` where that is
+/// less: what weight strains is missing in the thickness of the deposit. Never more than the recipe's own. Pressures
+/// are over the modulus of confined compression.
 StiffnessDemand lowest_stiffness(const SolveOptions& options, const SpeedBound& bound);
 
 /// The strain by which `stiffness = "auto"` goes at an accuracy: sqrt(strain) grows with the share of the deposit that
