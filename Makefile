@@ -63,7 +63,7 @@ build: setup $(BUILD)/build.ninja ## the programs, in build/bin/ [CUDAARCHS=90-r
 	@cmake --build $(BUILD) -j $(JOBS) --target $(programs)
 
 # What compiling takes where nothing is compiled yet, in minutes of one processor.
-BUILD_MINUTES := 14
+BUILD_MINUTES := 16
 say-demo:
 	@[[ -x $(BUILD)/bin/talus-solve ]] || printf '%s\n' \
 	  'First what is missing comes through apt (how much, is said before it is fetched).' \
