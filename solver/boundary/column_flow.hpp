@@ -39,12 +39,28 @@ TALUS_HD bool lies_on_bed(Number rise, Number press, Number depth) {
   return rise <= Number(0) || rise * rise < press * depth;
 }
 
-/// The mass of the column that is dx, dy columns from column (i, j), 0 where there is none [kg].
+/// The number n of a column or row, seen in the walls on nodes `low` and `high` where it lies behind one of them.
+TALUS_HD int mirrored(int n, int low, int high) {
+  while (n < low || n > high) n = n < low ? 2 * low - n : 2 * high - n;
+  return n;
+}
+
+/// The share of the area of column (i, j) that lies before the walls on nodes: half on a wall, a quarter in a corner.
+template <class Real>
+TALUS_HD Real share_before_walls(const GridView<Real>& grid, int i, int j) {
+  const WallNodes& walls = grid.walls;
+  return (i == walls.west || i == walls.east ? Real(0.5) : Real(1)) *
+         (j == walls.south || j == walls.north ? Real(0.5) : Real(1));
+}
+
+/// The mass of the column that is dx, dy columns from column (i, j), 0 where there is none [kg]. Walls are mirrors: the
+/// mass goes on behind them, and that of a column on a wall is what a whole one would hold.
 template <class Real, class Number>
 TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int i, int j, int dx, int dy) {
-  const int a = i + dx, b = j + dy;
+  const int a = mirrored(i + dx, grid.walls.west, grid.walls.east),
+            b = mirrored(j + dy, grid.walls.south, grid.walls.north);
   if (a < 0 || b < 0 || a >= grid.columns || b >= grid.rows || grid.slot(a, b).offset < 0) return Number(0);
-  return mass[grid.column(a, b)];
+  return mass[grid.column(a, b)] / static_cast<Number>(share_before_walls(grid, a, b));
 }
 
 /// What a line of columns from outside the mass (the first) inwards tells of how much of the second's bed is covered:
@@ -67,9 +83,9 @@ TALUS_HD Number cover_at_edge(const Number (&line)[5], Number as_wall) {
 /// the light nodes of a wedge make Newton's iterations many.
 enum class Rim { any, wall };
 
-/// The share of a column's bed that is covered by matter: 1 but within two columns of an empty one. The edge of the
-/// mass crosses those columns, and their nodes hold some of the matter beside it (`cover_at_edge`, along the way to the
-/// heaviest column two from it, or for `Rim::wall` its share of the heaviest).
+/// The share of a column's bed before walls that is covered by matter: 1 but within two columns of an empty one. The
+/// edge of the mass crosses those columns, and their nodes hold some of the matter beside it (`cover_at_edge`, along
+/// the way to the heaviest column two from it, or for `Rim::wall` its share of the heaviest).
 template <class Real, class Number>
 TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int j, Rim rim = Rim::any) {
   bool at_edge = false;
@@ -162,7 +178,8 @@ TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* m
   const int column = grid.column(i, j);
   const Number sx = grid.slope_x[column], sy = grid.slope_y[column], h = grid.spacing;
   const Number steep = Number(sqrt(Number(1) + sx * sx + sy * sy));
-  return {normal_of(sx, sy), cover(grid, mass, i, j, rim) * h * h * steep};
+  const Number covered = cover(grid, mass, i, j, rim) * static_cast<Number>(share_before_walls(grid, i, j));
+  return {normal_of(sx, sy), covered * h * h * steep};
 }
 
 /// The step in which columns slip.

@@ -242,5 +242,23 @@ TEST(Cover, adds_up_to_the_length_of_a_wedge_wherever_its_tip_lies_in_the_grid) 
   }
 }
 
+/// Even matter between walls on nodes: those on a wall hold half a cell of it, and cover half a cell.
+TEST(Cover, is_half_a_cell_of_each_column_on_a_wall_however_narrow_the_strip) {
+  const SmallGrid grid;
+  for (int wide = 1; wide <= 5; ++wide) {
+    GridView<double> view = grid.view();
+    view.walls.west = 1;
+    view.walls.east = 1 + wide;
+    std::vector<double> mass(64);
+    for (std::size_t n = 0; n < 64; ++n) {
+      const int i = static_cast<int>(n % 8);
+      mass[n] = i < 1 || i > 1 + wide ? 0 : i == 1 || i == 1 + wide ? 50 : 100;
+    }
+    double area = 0;
+    for (int i = 1; i <= 1 + wide; ++i) area += bed_under(view, mass.data(), i, 4).area;
+    EXPECT_DOUBLE_EQ(area, wide * grid.spacing * grid.spacing) << wide << " cells wide";
+  }
+}
+
 }  // namespace
 }  // namespace talus::solver::testing
