@@ -175,10 +175,10 @@ TALUS_HD void advance_material(const Material<Real, Laws>& m, const Mat3<Real>& 
   });
 }
 
-/// This function advances the state over a step in equal pieces (T14b).
+/// This function returns a state after a step in equal pieces (T14b).
 template <class Real, class Laws>
-TALUS_RARE void advance_in_pieces(const Material<Real, Laws>& m, const Mat3<Real> g, int pieces, Real seconds,
-                                  MaterialState<Real>& s) {
+TALUS_RARE MaterialState<Real> advance_in_pieces(const Material<Real, Laws> m, const Mat3<Real> g, int pieces,
+                                                 Real seconds, MaterialState<Real> s) {
   const Real part = Real(1) / Real(pieces);
   Real slip = 0;
   for (int n = 0; n < pieces; ++n) {
@@ -186,6 +186,7 @@ TALUS_RARE void advance_in_pieces(const Material<Real, Laws>& m, const Mat3<Real
     slip += s.plastic_shear;
   }
   s.plastic_shear = slip;
+  return s;
 }
 
 /// This function takes a share of a point's stress away; what has opened stays open.

@@ -10,7 +10,7 @@
 #define TALUS_FOR_GPU 1  // this file is compiled for the GPU as well: instantiate templates for GpuDevice
 #else
 #define TALUS_HD inline
-#define TALUS_RARE inline
+#define TALUS_RARE __attribute__((noinline))
 #define TALUS_FLATTEN __attribute__((flatten))  // a loop over a kernel: what it calls is inlined, as on a GPU
 #define TALUS_FOR_GPU 0
 #endif

@@ -176,7 +176,7 @@ struct GridToParticle {
     if (pieces == 1)
       advance_material(material, g, dt, state);
     else
-      advance_in_pieces(material, g, pieces, dt, state);
+      state = advance_in_pieces(material, g, pieces, dt, state);
     const Real waves = wave_speed(material, state);
     if (!bound_by_layers && !material.holds_tension()) {
       const Real kept = share_kept_alone(sums.company.alone(s), waves * across);

@@ -101,7 +101,7 @@ TEST(Pieces, turn_no_matter_inside_out) {
       EXPECT_TRUE(pieces == 1 || g.cwiseAbs().sum() > 0.25 * pieces) << "no more pieces than it takes";
       inside_out += (Matrix::Identity() + g).determinant() <= 0 ? 1 : 0;
       MaterialState<double> state{};
-      advance_in_pieces(sand(), columns(g), pieces, 0.01, state);
+      state = advance_in_pieces(sand(), columns(g), pieces, 0.01, state);
       const double piece = (Matrix::Identity() + g / pieces).determinant();
       EXPECT_NEAR(state.log_volume, pieces * std::log(piece), 1e-12 * pieces);
       EXPECT_TRUE(std::isfinite(norm_squared(state.elastic))) << "size " << size;
