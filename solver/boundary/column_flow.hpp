@@ -39,9 +39,10 @@ TALUS_HD bool lies_on_bed(Number rise, Number press, Number depth) {
   return rise <= Number(0) || rise * rise < press * depth;
 }
 
-/// The number n of a column or row, seen in the walls on nodes `low` and `high` where it lies behind one of them.
+/// The number n of a column or row, seen in the walls on nodes `low` and `high` where it lies behind one of them; n
+/// where they leave no room between them.
 TALUS_HD int mirrored(int n, int low, int high) {
-  while (n < low || n > high) n = n < low ? 2 * low - n : 2 * high - n;
+  while (low < high && (n < low || n > high)) n = n < low ? 2 * low - n : 2 * high - n;
   return n;
 }
 

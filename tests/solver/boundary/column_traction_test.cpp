@@ -260,5 +260,12 @@ TEST(Cover, is_half_a_cell_of_each_column_on_a_wall_however_narrow_the_strip) {
   }
 }
 
+TEST(Cover, mirrors_nothing_in_walls_that_leave_no_room) {
+  EXPECT_EQ(mirrored(-1, 1, 2), 1) << "behind one, then the other";
+  EXPECT_EQ(mirrored(4, 1, 3), 2);
+  EXPECT_EQ(mirrored(4, 2, 2), 4);
+  EXPECT_EQ(mirrored(4, 5, 3), 4);
+}
+
 }  // namespace
 }  // namespace talus::solver::testing
