@@ -254,9 +254,9 @@ TEST(Cover, is_half_a_cell_of_each_column_on_a_wall_however_narrow_the_strip) {
       const int i = static_cast<int>(n % 8);
       mass[n] = i < 1 || i > 1 + wide ? 0 : i == 1 || i == 1 + wide ? 50 : 100;
     }
-    double area = 0;
-    for (int i = 1; i <= 1 + wide; ++i) area += bed_under(view, mass.data(), i, 4).area;
-    EXPECT_DOUBLE_EQ(area, wide * grid.spacing * grid.spacing) << wide << " cells wide";
+    double covered = 0;
+    for (int i = 1; i <= 1 + wide; ++i) covered += bed_under(view, mass.data(), i, 4).area;
+    EXPECT_DOUBLE_EQ(covered, wide * grid.spacing * grid.spacing) << wide << " cells wide";
   }
 }
 
