@@ -50,6 +50,7 @@ outside+='|libstdc\+\+\.|libgcc_s\.|libcuda\.|libnvidia-)'
 
 rm -rf "$bundle" "$archive"
 mkdir -p "$bundle"/{bin,lib}
+bundle=$(realpath "$bundle")
 if [[ $name == bundle ]]; then
   cmake --install "$build" --prefix "$bundle" --component runtime >/dev/null ||
     fail "'cmake --install $build' failed. Build what it installs: make build"
@@ -123,26 +124,22 @@ rm -rf "$bundle"/share/doc/*/notices   # those of what is compiled in: they are 
 "$source/tools/collect-notices.sh" "$bundle/share/doc/notices" "${carried[@]}"
 
 # The check: with an empty environment, every library must come from the bundle or be one of those outside.
-strangers=0
+# strangers: of lines "NAME PATH" those that are neither.
+strangers() {
+  local name path
+  while read -r name path; do
+    [[ $path == "$bundle"/* || $name =~ $outside ]] || echo "$name from $path"
+  done
+}
 for program in "${programs[@]/#/$bundle/bin/}" "${modules[@]}"; do
-  while read -r soname path; do
-    real=$(realpath "$path")
-    if [[ $real != "$(realpath "$bundle")"/* && ! $soname =~ $outside ]]; then
-      echo "$(basename "$program") takes $soname from $path, not from the bundle" >&2
-      strangers=1
-    fi
-  done < <(env -i ldd "$program" | awk '$2 == "=>" { print $1, $3 }')
+  taken=$(env -i ldd "$program" | awk '$2 == "=>" { print $1, $3 }' | strangers)
+  [[ -z $taken ]] || fail "the bundle does not stand alone: $(basename "$program") takes $taken"
 done
-[[ $strangers -eq 0 ]] || fail "the bundle does not stand alone"
 for program in "${programs[@]}"; do
   env -i "$bundle/bin/$program" --help >/dev/null || fail "$program --help failed inside the bundle"
   loaded=$(env -i LD_DEBUG=libs "$bundle/bin/$program" --help 2>&1 >/dev/null |
-    sed -n 's/.*calling init: //p' | sort -u)
-  while read -r path; do
-    if [[ $(realpath "$path") != "$(realpath "$bundle")"/* && ! $(basename "$path") =~ $outside ]]; then
-      fail "$program loads $path at run time"
-    fi
-  done <<<"$loaded"
+    sed -n 's#.*calling init: \(\(.*/\)*\(.*\)\)#\3 \1#p' | sort -u | strangers)
+  [[ -z $loaded ]] || fail "$program loads $loaded at run time"
 done
 
 count() { find "$1" -type f | wc -l; }
