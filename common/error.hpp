@@ -26,10 +26,8 @@ std::string to_string(const Fault& fault);
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, std::vector<Fault> faults);
-  /// What the process returns.
-  ExitCode code() const { return code_; }
-  /// All faults that were found.
-  const std::vector<Fault>& faults() const { return faults_; }
+  ExitCode code() const { return code_; }                       ///< what the process returns
+  const std::vector<Fault>& faults() const { return faults_; }  ///< all faults that were found
 
  private:
   ExitCode code_;

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <system_error>
-#include <vector>
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -28,6 +28,16 @@ std::string whole_text(const fs::path& file, std::uintmax_t most,
   if (stream.bad()) refuse(std::generic_category().message(errno));
   if (text.size() > most) refuse(fmt::format("it is longer than {} MB", most >> 20));
   return text;
+}
+
+std::vector<std::string> lines_in(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return lines;
 }
 
 }  // namespace talus

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small synthetic terrains, given by formulas: the same on every machine and at any cell size.
+// Small synthetic terrains, given by formulas: the same on every machine and at any cell size. Some are as hard on a
+// solver as real ones: rough, bent, steep to a cliff, open.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -64,13 +66,84 @@ Raster raster_of(double width, double height, double cell, Value value) {
   raster.grid.west = west;
   raster.grid.south = south;
   raster.grid.cell = cell;
-  for (int row = 0; row < raster.grid.rows; ++row) {
+  for (int row = 0; row < raster.grid.rows; ++row)
     for (int column = 0; column < raster.grid.columns; ++column) {
       const double z = value((column + 0.5) * cell, (row + 0.5) * cell);
       raster.values.push_back(static_cast<double>(static_cast<long long>(z * 100 + (z < 0 ? -0.5 : 0.5))) / 100);
     }
-  }
   return raster;
+}
+
+/// A ground and what is released on it [m]. x points down the slope, y to its left; both hold outside of the rectangle.
+struct HardTerrain {
+  double width, height;                  ///< of the rectangle, along x and y [m]
+  double (*ground)(double x, double y);  ///< elevation [m]
+  /// Vertical thickness [m], on the ground.
+  double (*release)(double x, double y);
+};
+
+/// How a terrain is laid on the map: mirrored left to right, then turned counter-clockwise.
+struct Pose {
+  bool mirrored = false;
+  double turned_deg = 0;
+};
+
+/// A terrain on a map of its bounding rectangle, whose middle stays its middle.
+class LaidTerrain {
+ public:
+  /// The constructor makes the map large enough, in whole cells [m].
+  LaidTerrain(const HardTerrain& terrain, double cell, const Pose& pose);
+  Sample sample() const;  ///< "dem" and "release_thickness" on that map
+  /// A place of the map, counted from its corner, on the terrain's own axes [m].
+  std::array<double, 2> own(double x, double y) const;
+
+ private:
+  HardTerrain terrain_;
+  double cell_, along_, across_;  ///< along_, across_: cosine and sine of the turn
+  double side_;                   ///< -1 where mirrored
+  double width_, height_;         ///< of the map [m]
+};
+
+/// A fractal slope of 30 degrees that runs out on 4 degrees, 640 m x 320 m, and 0.5 to 1 m of mass on it: a self-affine
+/// surface (Hurst exponent 0.8) of waves of 5 to 160 m, as high as the flow is thick where they are 20 m long.
+HardTerrain rough_slope();
+
+/// A gully 18 m deep in a slope of 27 degrees that bends by 45 degrees and back and ends on a fan; up to 5 m of mass.
+HardTerrain bent_gully();
+
+/// A slope of 32 degrees that ends at a cliff of 40 m and 76 degrees, a bench of 50 m below it, and a lower slope of 30
+/// degrees, 520 m x 300 m, and up to 5 m of mass above the cliff.
+HardTerrain cliff_bench();
+
+/// A slope of 32 degrees above an open fan of 11 degrees, 900 m x 700 m; up to 18 m of mass that thins to a metre.
+HardTerrain thinning_slide();
+
+/// A slope of sound rock, 30 degrees, that runs out on 4 degrees, 480 m x 260 m, under up to 16 m of weathered ground,
+/// which lies there at rest: a scene for slope stability. The cover is what a scene calls its release.
+HardTerrain weathered_slope();
+
+/// The elevation [m] lost by a slope at x: tangent `steep` up to `from`, then smoothly `gentle` from `from + over`.
+double fall(double x, double steep, double gentle, double from, double over);
+
+/// A range of wavelengths [m].
+struct Waves {
+  double longest, shortest;
+};
+
+/// A self-affine surface (Mandelbrot 1982; Hurst exponent 0.8): waves from the longest on, each half as long as the one
+/// before and 2^-0.8 as high; the longest is at most 1 high.
+double fractal(double x, double y, const Waves& waves, unsigned seed);
+
+/// From 0 (t <= 0) to 1 (t >= 1) without a kink.
+inline double smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+/// Integral of smooth() from 0 to t.
+inline double smooth_integral(double t) {
+  const double c = std::clamp(t, 0.0, 1.0);
+  return c * c * c - c * c * c * c / 2 + std::max(0.0, t - 1);
 }
 
 }  // namespace talus::samples

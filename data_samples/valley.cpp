@@ -5,17 +5,14 @@
 #include <cmath>
 #include <random>
 
-#include "data_samples/smooth.hpp"
 #include "data_samples/terrains.hpp"
 
 namespace talus::samples {
-
 namespace {
 
 constexpr double width = 960, height = 680;
 
-// The valley is described along its own axes and laid obliquely across the map, at an angle to the light of a hillshade
-// (from the north-west).
+// The valley has axes of its own, laid obliquely across the map, at an angle to the light of a hillshade (north-west).
 constexpr double turn_angle = -30 * M_PI / 180;
 
 struct Place {
@@ -101,13 +98,12 @@ double lobe_shape(double x, double y) {
 double volume_ratio() {
   double scar_volume = 0, lobe_volume = 0;
   constexpr int step = 2;  // [m]
-  for (int row = 0; row * step + 1 < height; ++row) {
+  for (int row = 0; row * step + 1 < height; ++row)
     for (int column = 0; column * step + 1 < width; ++column) {
       const double x = column * step + 1, y = row * step + 1;
       scar_volume += scar_at(x, y);
       lobe_volume += lobe_shape(x, y);
     }
-  }
   return scar_volume / lobe_volume;
 }
 
@@ -157,8 +153,7 @@ class SurveyError {
   std::mt19937 random_;
 };
 
-/// Where the later survey saw nothing: one hole in the scar, one in the deposit, three elsewhere (along the valley's
-/// axes).
+/// Where the later survey saw nothing, along the valley's axes: holes in scar and deposit, three elsewhere.
 bool unseen(double x, double y) {
   constexpr std::array<std::array<double, 3>, 5> holes{
       {{310, 330, 19}, {640, 380, 22}, {160, 400, 26}, {480, 150, 24}, {840, 560, 21}}};
@@ -180,12 +175,11 @@ Sample raw_valley(double cell, unsigned seed) {
     const Place p = turned(x - shift_x, y - shift_y);
     return after(p.x, p.y, ratio) + lift + second(x, y);
   });
-  for (int row = 0; row < later.grid.rows; ++row) {
+  for (int row = 0; row < later.grid.rows; ++row)
     for (int column = 0; column < later.grid.columns; ++column) {
       const Place p = turned((column + 0.5) * cell - shift_x, (row + 0.5) * cell - shift_y);
       if (unseen(p.x, p.y)) later.at(column, row) = std::nan("");
     }
-  }
   sample.rasters.emplace_back("after_dem", std::move(later));
   return sample;
 }

@@ -15,6 +15,7 @@
 #include "library/talus.hpp"
 
 namespace py = pybind11;
+using namespace py::literals;
 
 namespace {
 
@@ -99,12 +100,11 @@ py::array map_view(const talus::MapGrid& grid, const std::vector<double>& values
   return view({grid.rows, grid.columns}, values.data(), owner);
 }
 
-/// What a callback made, as an object that arrays keep alive.
+/// What a callback made, and the object by which arrays keep it alive.
 template <class T>
-py::capsule owned(T&& made, const T*& place) {
-  auto* const kept = new T(std::forward<T>(made));
-  place = kept;
-  return py::capsule(kept, [](void* held) { delete static_cast<T*>(held); });
+std::pair<const T&, py::capsule> owned(T made) {
+  auto* const kept = new T(std::move(made));
+  return {*kept, py::capsule(kept, [](void* held) { delete static_cast<T*>(held); })};
 }
 
 py::dict views_of(const talus::RunMaps& maps, const py::handle& owner) {
@@ -119,44 +119,23 @@ py::dict views_of(const talus::RunMaps& maps, const py::handle& owner) {
 
 py::dict views_of(const talus::PointFrame& points, const py::handle& owner) {
   const auto count = static_cast<py::ssize_t>(points.volume.size());
-  py::dict all;
-  all["position"] = view({count, 3}, reinterpret_cast<const double*>(points.position.data()), owner);
-  all["velocity"] = view({count, 3}, reinterpret_cast<const float*>(points.velocity.data()), owner);
-  all["volume"] = view(points.volume, owner);
-  all["pressure"] = view(points.pressure, owner);
-  all["id"] = view(points.id, owner);
-  all["release"] = view(points.release, owner);
-  return all;
+  return py::dict("position"_a = view({count, 3}, reinterpret_cast<const double*>(points.position.data()), owner),
+                  "velocity"_a = view({count, 3}, reinterpret_cast<const float*>(points.velocity.data()), owner),
+                  "volume"_a = view(points.volume, owner), "pressure"_a = view(points.pressure, owner),
+                  "id"_a = view(points.id, owner), "release"_a = view(points.release, owner));
 }
 
 py::dict dict_of(const talus::MapGrid& grid) {
-  py::dict all;
-  all["columns"] = grid.columns;
-  all["rows"] = grid.rows;
-  all["west_m"] = grid.west;
-  all["south_m"] = grid.south;
-  all["cell_m"] = grid.cell;
-  all["crs_wkt"] = grid.crs_wkt;
-  return all;
+  return py::dict("columns"_a = grid.columns, "rows"_a = grid.rows, "west_m"_a = grid.west, "south_m"_a = grid.south,
+                  "cell_m"_a = grid.cell, "crs_wkt"_a = grid.crs_wkt);
 }
 
 py::dict dict_of(const talus::RunSummary& s) {
-  py::dict all;
-  all["scene"] = s.scene;
-  all["title"] = s.title;
-  all["on"] = s.on;
-  all["precision"] = s.precision;
-  all["version"] = s.version;
-  all["stop_reason"] = s.stop_reason;
-  all["particles"] = s.particles;
-  all["steps"] = s.steps;
-  all["time_end_s"] = s.time_end;
-  all["wall_time_s"] = s.wall_time;
-  all["volume_released_m3"] = s.volume_released;
-  all["volume_final_m3"] = s.volume_final;
-  all["volume_outflow_m3"] = s.volume_outflow;
-  all["sanity"] = s.sanity.words;
-  return all;
+  return py::dict("scene"_a = s.scene, "title"_a = s.title, "on"_a = s.on, "precision"_a = s.precision,
+                  "version"_a = s.version, "stop_reason"_a = s.stop_reason, "particles"_a = s.particles,
+                  "steps"_a = s.steps, "time_end_s"_a = s.time_end, "wall_time_s"_a = s.wall_time,
+                  "volume_released_m3"_a = s.volume_released, "volume_final_m3"_a = s.volume_final,
+                  "volume_outflow_m3"_a = s.volume_outflow, "sanity"_a = s.sanity.words);
 }
 
 // ---- a run ----------------------------------------------------------------------------------------------------------
@@ -258,18 +237,17 @@ void define_recipe_and_site(py::module_& m) {
     };
   };
   py::class_<Site, std::shared_ptr<Site>>(m, "Site", "Ground, released mass, obstacles and shaking: input of a plan.")
-      .def(py::init(&make_site), py::arg("bed"), py::arg("thickness"), py::kw_only(), py::arg("cell"),
-           py::arg("west") = 0.0, py::arg("south") = 0.0, py::arg("layer_height") = 0.0,
-           py::arg("per_cell") = std::array<int, 3>{2, 2, 2}, py::arg("crs_wkt") = "",
+      .def(py::init(&make_site), "bed"_a, "thickness"_a, py::kw_only(), "cell"_a, "west"_a = 0.0, "south"_a = 0.0,
+           "layer_height"_a = 0.0, "per_cell"_a = std::array<int, 3>{2, 2, 2}, "crs_wkt"_a = "",
            "A site of arrays [rows][columns], the southernmost row first: elevation of the bed and vertical thickness "
            "of the released mass [m]. Cells of width `cell` [m]; layers of `layer_height` [m] (0: by the thickness).")
       .def_property_readonly("terrain", map_of(&talus::Domain::terrain), "Elevation of the bed [m].")
       .def_property_readonly("before", map_of(&talus::Domain::before), "Elevation before the failure [m].")
       .def_property_readonly("thickness", map_of(&talus::Domain::release_thickness), "Released thickness [m].")
       .def_property_readonly("grid", [](const Site& site) { return dict_of(site.domain.grid); })
-      .def("add_obstacle", &add_obstacle, py::arg("name"), py::arg("low"), py::arg("high"), py::arg("distance"),
+      .def("add_obstacle", &add_obstacle, "name"_a, "low"_a, "high"_a, "distance"_a,
            "A body for [[solve.obstacle]] of this name: distance(x, y, z) [m] is negative inside, within low and high.")
-      .def("set_shaking", &set_shaking, py::arg("time"), py::arg("acceleration"),
+      .def("set_shaking", &set_shaking, "time"_a, "acceleration"_a,
            "Accelerations of the ground [n][3] [m/s2] at times [s], in the place of [solve.shaking] file.");
   m.def("prepare", [](const RecipeWords& words, int threads) {
     return called(threads, [&] { return std::make_shared<Site>(talus::prepare(words.recipe())); });
@@ -290,7 +268,7 @@ void define_runs(py::module_& m) {
           [](const Plan& plan, const std::string& on) {
             return called(0, [&, device = device_called(on)] { return plan.description(device); });
           },
-          py::arg("on") = "auto", "A line each on what is on, memory, steps and time. Takes a few steps.");
+          "on"_a = "auto", "A line each on what is on, memory, steps and time. Takes a few steps.");
   py::class_<PyMoment, std::shared_ptr<PyMoment>>(m, "Moment", "A run at one of its records, in a callback.")
       .def_property_readonly(
           "time", [](const PyMoment& moment) { return moment.now().time(); }, "[s]")
@@ -298,23 +276,20 @@ void define_runs(py::module_& m) {
       .def_property_readonly(
           "thickness",
           [](const PyMoment& moment) {
-            const std::vector<double>* values = nullptr;
-            const auto owner = owned(moment.now().thickness(), values);
-            return map_view(moment.now().grid(), *values, owner);
+            const auto& [values, owner] = owned(moment.now().thickness());
+            return map_view(moment.now().grid(), values, owner);
           },
           "Vertical thickness of all points [m].")
       .def_property_readonly(
           "maps",
           [](const PyMoment& moment) {
-            const talus::RunMaps* maps = nullptr;
-            const auto owner = owned(moment.now().maps(), maps);
-            return views_of(*maps, owner);
+            const auto& [maps, owner] = owned(moment.now().maps());
+            return views_of(maps, owner);
           },
           "Maps by name, as they would be if the run ended now.")
       .def_property_readonly("points", [](const PyMoment& moment) {
-        const talus::PointFrame* points = nullptr;
-        const auto owner = owned(moment.now().points(), points);
-        return views_of(*points, owner);
+        const auto& [points, owner] = owned(moment.now().points());
+        return views_of(points, owner);
       });
   py::class_<Result, std::shared_ptr<Result>>(m, "Result", "A finished run.")
       .def_property_readonly("grid", [](const Result& result) { return dict_of(result.maps.grid); })

@@ -10,15 +10,15 @@
 
 #include "common/domain/threads.hpp"
 #include "common/ensemble/options.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/machine.hpp"
-#include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
-#include "postprocess/postprocess.hpp"
+#include "postprocess/stage.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/provenance.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/scene/prepare.hpp"
-#include "solver/integrator/shaking.hpp"
+#include "solver/integrator/scene.hpp"
 #include "solver/plan/describe_plan.hpp"
 #include "solver/plan/named_places.hpp"
 #include "solver/plan/plan.hpp"
@@ -26,7 +26,6 @@
 #include "solver/run/recorders/frames.hpp"
 #include "solver/run/run_loop.hpp"
 #include "solver/run/run_stage.hpp"
-#include "solver/run/sanity.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus {
@@ -76,7 +75,6 @@ void take_bodies(const Site& site, solver::SolveOptions& options) {
   }
 }
 
-/// The options of a recipe for one run, with what the site has in memory.
 solver::SolveOptions options_of(const Site& site, const recipe::Recipe& recipe) {
   auto options = solver::with_preset(recipe.read<solver::SolveOptions>("solve"));
   if (ensemble_of(recipe).on() || options.stability.factor_of_safety)
@@ -124,10 +122,9 @@ PointFrame points_of(solver::RunLoop& loop) {
 }  // namespace
 
 Domain make_domain(Raster bed, Raster thickness, double layer_height, std::array<int, 3> per_cell) {
-  const MapGrid &grid = bed.grid, &other = thickness.grid;
-  const bool same = grid.columns == other.columns && grid.rows == other.rows && grid.west == other.west &&
-                    grid.south == other.south && grid.cell == other.cell;
-  if (!same || bed.values.size() != grid.count() || thickness.values.size() != grid.count())
+  const MapGrid& grid = bed.grid;
+  if (!grid.has_cells_of(thickness.grid) || bed.values.size() != grid.count() ||
+      thickness.values.size() != grid.count())
     throw DataError({"bed and thickness in memory: not one grid", "a column of the grid stands over each cell",
                      "Give rasters with the same cells, and a value for each"});
   if (!(grid.cell > 0) || *std::min_element(per_cell.begin(), per_cell.end()) < 1)

@@ -14,7 +14,6 @@
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,7 +28,6 @@
 #include "solver/parallel/on.hpp"
 
 namespace talus {
-
 namespace solver {
 struct Plan;
 class RunLoop;
@@ -50,12 +48,10 @@ struct Site {
 };
 
 /// The domain of a bed and a released thickness on one grid, seeded with `per_cell` points along x, y and the height of
-/// a layer [m] (0: by the thickness). Throws DataError: other grids, no thickness, a negative or infinite one, no width
-/// of cells.
+/// a layer [m] (0: by the thickness). Throws DataError: other grids; no, negative or infinite thickness; no cell.
 Domain make_domain(Raster bed, Raster thickness, double layer_height = 0, std::array<int, 3> per_cell = {2, 2, 2});
 
-/// The site of [preprocess] of a recipe, from the files that it names. Nothing is written. Throws RecipeError,
-/// DataError.
+/// The site of [preprocess] of a recipe, from the files it names; nothing is written. Throws RecipeError, DataError.
 Site prepare(const recipe::Recipe& recipe);
 
 class Keeper;
@@ -69,14 +65,11 @@ class Plan {
   /// accept).
   Plan(Site site, const recipe::Recipe& recipe);
 
-  /// The cells of the maps.
-  const MapGrid& grid() const;
-  /// Number of material points at the start.
-  std::size_t points() const;
+  const MapGrid& grid() const;  ///< the cells of the maps
+  std::size_t points() const;   ///< number of material points at the start
   /// A line each on what is on, memory, steps and time, as talus-solve --plan prints them. Takes a few steps.
   std::vector<std::string> description(On on = On::automatic) const;
-  /// Advice, warnings and overridden refusals of the site and the plan.
-  std::vector<Finding> findings() const;
+  std::vector<Finding> findings() const;  ///< advice, warnings and overridden refusals of the site and the plan
 
  private:
   friend Result run(const Plan& plan, On on, Keeper& keeper);
@@ -105,8 +98,7 @@ class Keeper {
   virtual ~Keeper() = default;
   /// Called each [solve] history_interval_s, from the start on. False ends the run.
   virtual bool record(const Moment& /*now*/) { return true; }
-  /// Called after every few steps; it may throw to give the run up.
-  virtual void pass_steps() {}
+  virtual void pass_steps() {}  ///< called after every few steps; it may throw to give the run up
 };
 
 /// A finished run.
@@ -119,8 +111,7 @@ struct Result : Run {
 Result run(const Plan& plan, On on = On::automatic);
 Result run(const Plan& plan, On on, Keeper& keeper);
 
-/// Writes run.h5 without its points, and the outputs of [postprocess] into a folder. Returns the paths. Throws
-/// RecipeError, DataError.
+/// Writes run.h5 without its points, and the outputs of [postprocess]; the paths. Throws RecipeError, DataError.
 std::vector<std::filesystem::path> write(const Result& result, const recipe::Recipe& recipe,
                                          const std::filesystem::path& folder);
 

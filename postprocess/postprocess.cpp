@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/postprocess.hpp"
+#include "postprocess/stage.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,28 +11,24 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/options.hpp"
-#include "common/ensemble/slide_options.hpp"
 #include "common/gis/crs.hpp"
-#include "common/gis/dataset_files.hpp"
-#include "common/recipe/vector_source.hpp"
-#include "common/run/run_facts.hpp"
+#include "common/gis/local_only.hpp"
+#include "common/recipe/paths.hpp"
+#include "common/run/run_file.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
-#include "common/stage/input_file.hpp"
 #include "postprocess/compare/compare.hpp"
-#include "postprocess/ensemble/run_ensemble.hpp"
+#include "postprocess/ensemble/results.hpp"
 #include "postprocess/fields/fields.hpp"
-#include "postprocess/survey/found_survey.hpp"
 #include "postprocess/survey/survey.hpp"
 #include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
+namespace fs = std::filesystem;
 namespace {
 
-namespace fs = std::filesystem;
-
-/// The map must hold the volume of the points: 1e-9 of it where the run was in double precision. A hundredth off is no
-/// rounding but a broken run.
+/// The map must hold the volume of the points, to 1e-9 in double precision; a hundredth off is a broken run.
 void check_volume(const fs::path& file, const Run& run) {
   const double on_map = volume_under(run.maps.deposit_thickness, run.maps.grid.cell), points = run.summary.volume_final;
   const double error = std::abs(on_map - points) / std::max(run.summary.volume_released, 1e-300);
@@ -57,8 +53,7 @@ std::vector<fs::path> texts_beside(const fs::path& folder) {
   return files;
 }
 
-/// Whether there is a single run to work on. Beside an ensemble there need not be one, and one that another recipe left
-/// in the folder is not of it.
+/// Whether there is a single run to work on: beside an ensemble there need not be one, and another recipe's is not it.
 bool has_single_run(const StageContext& context, const Options& options) {
   const fs::path file = run_file(context, options);
   if (!ensemble_of(context.recipe).on() || !options.run.empty()) return true;
@@ -66,31 +61,6 @@ bool has_single_run(const StageContext& context, const Options& options) {
   const std::string mark = fact(run_facts(file), recipe_of_run);
   return mark.empty() || mark == recipe_mark(context.recipe, "solve");
 }
-
-}  // namespace
-
-Dependencies depends(const StageContext& context) {
-  if (slides_of(context.recipe).on()) return ensemble_depends(context);
-  auto options = context.recipe.read<Options>("postprocess");
-  options.survey.name_files(context.out);
-  const fs::path run = run_file(context, options);
-  const SurveyOptions& survey = options.survey;
-  if (survey.from_preprocess && lacks_error(context.out)) options.survey.sigma.clear();
-  auto inputs = with_sidecars({survey.thickness, survey.difference, survey.after_dem, survey.before_dem, survey.sigma,
-                               survey.peak_thickness, survey.polygon, options.thalweg});
-  inputs.insert(inputs.begin(), run);
-  for (const fs::path& polygons : hazard_inputs(options)) inputs.push_back(polygons);
-  if (options.writes("report"))
-    for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
-  if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
-  Dependencies depends = ensemble_depends(context);
-  const bool single = has_single_run(context, options);
-  if (single) depends.results.push_back(context.out / "score.json");
-  depends.inputs.insert(depends.inputs.end(), inputs.begin() + (single ? 0 : 1), inputs.end());
-  return depends;
-}
-
-namespace {
 
 /// Refuses a run of another recipe than the one at hand, or of a domain that another one made.
 void judge_run(const StageContext& context, const Job& job) {
@@ -136,15 +106,15 @@ std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
   if (job.thalweg.given) inputs.push_back(vector_source(job.options.thalweg).file);
-  for (const fs::path& polygons : hazard_inputs(job.options)) inputs.push_back(polygons);
+  for (const fs::path& polygons : with_sidecars({job.options.buildings.polygons})) inputs.push_back(polygons);
   return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
                      {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
 
 void write_results(StageContext& context, Job& job) {
   job.score = make_score(job.run, job.options, job.survey, job.thalweg, &job.hazard);
-  job.options.writers.remove_outdated(context.out);
-  const Files files = job.options.writers.write(job);
+  remove_outdated_outputs(context.out);
+  const Files files = write_outputs(job);
   context.results.insert(context.results.end(), files.begin(), files.end());
   log_info("\n" + to_table(job.score));
 }
@@ -153,7 +123,6 @@ void run_single(StageContext& context, const Options& options) {
   Job job{.options = options, .out = context.out, .command_line = context.command_line};
   job.used = [&] { return used_text(context, job); };
   Findings findings("postprocess", job.options.accept);
-  if (job.options.survey.from_preprocess) require_whole_survey(context.out);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
   job.options.survey.find_in(context.out, found.error_known);
   findings.settled([&] {
@@ -180,11 +149,40 @@ void run_single(StageContext& context, const Options& options) {
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
-  job.options.writers.check(job);
+  check_outputs(job);
   if (!context.check_only) write_results(context, job);
 }
 
+std::string id_in(const fs::path& result) {
+  if (result.filename() != "score.json") return "";
+  static constexpr std::string_view key = "\"run_id\": \"";
+  const std::string text = text_if_there(result).value_or("");
+  const auto at = text.find(key);
+  return at == std::string::npos ? "" : text.substr(at + key.size(), mark_digits);
+}
+
 }  // namespace
+
+Dependencies depends(const StageContext& context) {
+  if (slides_of(context.recipe).on()) return ensemble_depends(context);
+  auto options = context.recipe.read<Options>("postprocess");
+  options.survey.name_files(context.out);
+  const fs::path run = run_file(context, options);
+  const SurveyOptions& survey = options.survey;
+  if (survey.from_preprocess && lacks_error(context.out)) options.survey.sigma.clear();
+  auto inputs = with_sidecars({survey.thickness, survey.difference, survey.after_dem, survey.before_dem, survey.sigma,
+                               survey.peak_thickness, survey.polygon, options.thalweg});
+  inputs.insert(inputs.begin(), run);
+  for (const fs::path& polygons : with_sidecars({options.buildings.polygons})) inputs.push_back(polygons);
+  if (options.writes("report"))
+    for (const fs::path& file : texts_beside(run.parent_path())) inputs.push_back(file);
+  if (!ensemble_of(context.recipe).on()) return {{context.out / "score.json"}, inputs};
+  Dependencies depends = ensemble_depends(context);
+  const bool single = has_single_run(context, options);
+  if (single) depends.results.push_back(context.out / "score.json");
+  depends.inputs.insert(depends.inputs.end(), inputs.begin() + (single ? 0 : 1), inputs.end());
+  return depends;
+}
 
 void run(StageContext& context) {
   const auto options = context.recipe.read<Options>("postprocess");
@@ -197,19 +195,6 @@ void run(StageContext& context) {
     warn("run-of-another-recipe",
          fmt::format("{}: another recipe made it than the ensemble's; it is left as it is", file.string()));
 }
-
-namespace {
-
-/// The id of the run in score.json.
-std::string id_in(const fs::path& result) {
-  if (result.filename() != "score.json") return "";
-  static constexpr std::string_view key = "\"run_id\": \"";
-  const std::string text = text_if_there(result).value_or("");
-  const auto at = text.find(key);
-  return at == std::string::npos ? "" : text.substr(at + key.size(), mark_digits);
-}
-
-}  // namespace
 
 Stage stage() {
   const auto against = std::make_shared<std::optional<fs::path>>();

@@ -11,4 +11,10 @@ namespace talus::postprocess {
 /// The stage with flags of its own: each call of the function makes another set of flags.
 Stage stage();
 
+/// What the results are made of: run, survey, thalweg, and what the stages before left about themselves.
+Dependencies depends(const StageContext& context);
+
+/// Reads the recipe's table, the run and the survey; writes the results into context.out, except under --check.
+void run(StageContext& context);
+
 }  // namespace talus::postprocess

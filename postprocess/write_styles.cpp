@@ -9,15 +9,14 @@
 #include "common/error.hpp"
 #include "common/qgis/style.hpp"
 #include "common/stage/stage.hpp"
-#include "postprocess/fields/styles.hpp"
+#include "postprocess/fields/fields.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace talus;
 
-/// Maps whose largest values ask for the classes of a slide of this size: thickness [m], speed [m/s], pressure [kPa],
-/// duration [s].
+/// The largest values of a slide of this size: thickness [m], speed [m/s], pressure [kPa], duration [s].
 struct Extent {
   const char* folder;
   double thickness, speed, pressure, duration;

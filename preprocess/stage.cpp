@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <memory>
 
-#include "common/domain/domain_facts.hpp"
+#include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
 #include "common/gis/crs.hpp"
-#include "common/gis/dataset_files.hpp"
-#include "common/map/sum.hpp"
+#include "common/gis/local_only.hpp"
+#include "common/map/statistics.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
-#include "common/stage/stage.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/provenance.hpp"
@@ -30,13 +29,11 @@ void report(const Prepared& prepared) {
   log_info(fmt::format("working grid: {} x {} cells of {:g} m, layers of {:g} m, {}", grid.columns, grid.rows,
                        grid.cell, prepared.domain.layer_height, crs_name(grid.crs_wkt)));
   if (prepared.by_release.size() > 1) {
-    for (const auto& [name, volumes] : prepared.by_release) {
+    for (const auto& [name, volumes] : prepared.by_release)
       for (const std::string& line : as_lines(name, volumes)) log_info(line);
-    }
   }
-  if (prepared.survey) {
+  if (prepared.survey)
     for (const std::string& line : as_lines(*prepared.survey)) log_info(line);
-  }
   if (prepared.slide) {
     const bool doubtful = prepared.slide->outside_is_large || prepared.slide->outside_is_doubtful;
     doubtful ? warn("change-outside-slide", outside_words(*prepared.slide)) : log_info(outside_words(*prepared.slide));
@@ -51,11 +48,6 @@ void report(const Prepared& prepared) {
   log_info(fmt::format("material points: {} (the solver needs about {:.0f} MB for them)", grouped(count),
                        std::max(1.0, count * solver_bytes_per_point * 1e-6)));
 }
-
-/// What the command line says beyond what every stage takes.
-struct PreprocessFlags {
-  bool difference = false;  // compare the surveys and stop
-};
 
 /// OUT/survey, where there is anything to put into it.
 void write_survey_files(StageContext& context, const Prepared& prepared, const Facts& marks) {
@@ -73,8 +65,8 @@ void write_survey_files(StageContext& context, const Prepared& prepared, const F
 /// --difference: the two surveys alone, block by block, however large they are.
 void run_difference(StageContext& context, const Options& options) {
   if (options.way() != Way::before_and_after)
-    throw RecipeError(Fault{"--difference: [preprocess] does not give before_dem and after_dem",
-                            "there is nothing to compare", "Give both, or leave --difference out"});
+    throw RecipeError({"--difference: [preprocess] does not give before_dem and after_dem",
+                       "there is nothing to compare", "Give both, or leave --difference out"});
   Findings found("preprocess", options.accept);
   const Survey survey = survey_of(options);
   found.settle();
@@ -104,13 +96,12 @@ void write_obstacles(StageContext& context, Prepared& prepared) {
 }
 
 /// domain.vdb, or the survey alone where only the difference is asked for.
-Dependencies depends(const StageContext& context, const PreprocessFlags& flags) {
+Dependencies depends(const StageContext& context, bool difference) {
   if (slides_of(context.recipe).on())
     return {{context.out / "domain.vdb", EnsemblePaths{context.out}.members()},
             with_sidecars(inputs_of_slides(context.recipe))};
   const auto options = read_options(context);
-  if (flags.difference)
-    return {{context.out / "survey/survey.json"}, with_sidecars({options.before_dem, options.after_dem})};
+  if (difference) return {{context.out / "survey/survey.json"}, with_sidecars({options.before_dem, options.after_dem})};
   Dependencies depends{{context.out / "domain.vdb"}, with_sidecars(inputs_of(options))};
   if (!options.obstacle.empty()) depends.results.push_back(context.out / "obstacles.vdb");
   const EnsembleOptions ensemble = ensemble_of(context.recipe);
@@ -151,10 +142,10 @@ void run_slides(StageContext& context) {
   copy_largest(context, made);
 }
 
-void run(StageContext& context, const PreprocessFlags& flags) {
+void run(StageContext& context, bool difference) {
   if (slides_of(context.recipe).on()) return run_slides(context);
   const auto options = read_options(context);
-  if (flags.difference) return run_difference(context, options);
+  if (difference) return run_difference(context, options);
   auto ensemble = plan_ensemble(context.recipe, options);
   SurveyMemory memory;
   EnsembleBase base{options, read_scene(options, &memory), memory, {}, {}, {}, {}};
@@ -174,11 +165,10 @@ void run(StageContext& context, const PreprocessFlags& flags) {
   if (!prepared.obstacles.empty())
     base.checksums = {{obstacles_checksum, fact(prepared.domain.provenance, obstacles_checksum)}};
   base.obstacles = prepared.domain.obstacles;
-  if (ensemble) {
+  if (ensemble)
     write_ensemble(context, *ensemble, base);
-  } else {
+  else
     remove_members({context.out}, nullptr);
-  }
   const auto file = context.out / "domain.vdb";
   context.results.push_back(file);
   Facts told{{"id", fact(marks, domain_id)}};
@@ -195,12 +185,6 @@ std::string template_of_tables() {
          recipe::to_toml(SlideOptions{}, "slides", true);
 }
 
-std::vector<Flag> flags_into(const std::shared_ptr<PreprocessFlags>& given) {
-  return {{.name = "--difference",
-           .help = "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop",
-           .set = [given](const std::string&) { given->difference = true; }}};
-}
-
 /// The id of a domain; of level sets, which carry none, their SHA-256.
 std::string id_in(const std::filesystem::path& result) {
   if (result.filename() == "domain.vdb") return fact(domain_facts(result), domain_id);
@@ -210,7 +194,7 @@ std::string id_in(const std::filesystem::path& result) {
 }  // namespace
 
 Stage stage() {
-  const auto given = std::make_shared<PreprocessFlags>();
+  const auto difference = std::make_shared<bool>(false);  // compare the surveys and stop
   Stage s;
   s.name = "talus-preprocess";
   s.table = "preprocess";
@@ -222,13 +206,15 @@ Stage stage() {
       "stop\n"
       "  talus-preprocess --template > recipe.toml       every key with its meaning and range";
   s.template_toml = template_of_tables;
-  s.flags = flags_into(given);
+  s.flags = {{.name = "--difference",
+              .help = "Compare before_dem and after_dem, write what changed with its error (OUT/survey), and stop",
+              .set = [difference](const std::string&) { *difference = true; }}};
   s.used_toml = [](const recipe::Recipe& recipe) { return used_tables(recipe, false); };
-  s.depends = [given](const StageContext& context) { return depends(context, *given); };
+  s.depends = [difference](const StageContext& context) { return depends(context, *difference); };
   s.id_of = id_in;
-  s.run = [given](StageContext& context) {
+  s.run = [difference](StageContext& context) {
     limit_threads_of_libraries(thread_limit());
-    run(context, *given);
+    run(context, *difference);
   };
   return s;
 }

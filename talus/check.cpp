@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "talus/check.hpp"
+#include "talus/commands.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "talus/temporary_folder.hpp"
 
 namespace talus::command {
 namespace fs = std::filesystem;
@@ -53,14 +51,11 @@ class Listing {
 
 /// Inputs of the scores that no stage makes and that are not there.
 void look_for_files(const Request& request, Listing& listing) {
-  for (const fs::path& input : depends_of(request, "postprocess").inputs) {
-    const fs::path below = input.lexically_relative(request.out);
-    const bool made = !below.empty() && *below.begin() != "..";
-    if (!made && !fs::exists(input))
+  for (const fs::path& input : depends_of(request, "postprocess").inputs)
+    if (!lies_in(input, request.out) && !fs::exists(input))
       listing.add_fault("postprocess",
                         input.string() + ": no such file. A recipe names it: put it there, or mend the recipe",
                         ExitCode::data);
-  }
 }
 
 bool up_to_date(const Request& request, const std::string& stage) {

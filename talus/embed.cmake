@@ -3,5 +3,5 @@
 # Writes the table of public examples into a source: cmake -DTABLE=... -DOUTPUT=... -P embed.cmake
 file(READ ${TABLE} _text)
 file(WRITE ${OUTPUT}
-  "#include \"talus/public_data.hpp\"\n\n"
+  "#include \"talus/commands.hpp\"\n\n"
   "std::string_view talus::command::public_data_table() {\n  return R\"talus-table(${_text})talus-table\";\n}\n")

@@ -8,17 +8,12 @@
 #include <functional>
 
 #include "common/error.hpp"
-#include "common/recipe/shown_paths.hpp"
-#include "common/run/prepare_hdf5.hpp"
+#include "common/recipe/paths.hpp"
+#include "common/run/run_file.hpp"
 #include "common/stage/context.hpp"
-#include "common/stage/crash_report.hpp"
-#include "common/stage/interrupt.hpp"
+#include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
-#include "talus/check.hpp"
-#include "talus/compare.hpp"
-#include "talus/new.hpp"
-#include "talus/public_data.hpp"
-#include "talus/run.hpp"
+#include "talus/commands.hpp"
 
 namespace {
 
@@ -36,10 +31,7 @@ constexpr const char* footer =
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
     "  talus compare out-a out-b                          two runs beside one another: out-a/comparison.html\n"
     "  talus data cascade2021                             a public example, fetched and checked\n"
-    "\n"
-    "Exit codes: 0 done, 1 a bug, 2 the recipe or the command line is wrong, 3 a file is wrong or cannot be written,\n"
-    "4 the computation failed, 130 ended by Ctrl-C.\n"
-    "Result paths go to stdout, everything for people to stderr.";
+    "\n";
 
 /// Words of the command line, and what is to be done with them.
 struct Asked {
@@ -48,7 +40,6 @@ struct Asked {
   std::function<int()> command;
 };
 
-/// The options of what runs the stages.
 void declare_scene(CLI::App& app, Asked& asked) {
   app.add_option("recipe", asked.recipe, "The scene's recipe (TOML)")->type_name("recipe.toml")->required();
   app.add_option("--out", asked.out, "Folder of the results (default: out, beside the recipe)")->type_name("DIR");
@@ -134,7 +125,7 @@ int guarded(int argc, char** argv) {
   CLI::App app("One command over the stages of Talus", "talus");
   app.require_subcommand(0, 1);
   app.fallthrough();
-  app.footer(footer);
+  app.footer(std::string(footer) + exit_codes);
   auto* verbose = app.add_flag("-v,--verbose", asked.request.verbose, "Say more");
   app.add_flag("-q,--quiet", asked.request.quiet, "Say nothing but errors")->excludes(verbose);
   bool asks_version = false;

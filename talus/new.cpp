@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "talus/new.hpp"
+#include "talus/commands.hpp"
 
 #include <fmt/format.h>
 
@@ -10,14 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/domain/domain.hpp"
-#include "common/gis/read_raster.hpp"
-#include "common/recipe/values.hpp"
+#include "common/gis/raster_file.hpp"
+#include "common/recipe/recipe.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/identity.hpp"
-#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
-#include "talus/request.hpp"
-#include "talus/slide.hpp"
-#include "talus/temporary_folder.hpp"
 
 namespace talus::command {
 namespace fs = std::filesystem;
@@ -82,8 +79,7 @@ bool asks_for(const Said& said, const char* key) {
                      [&](const auto& line) { return line.second.find(key) != std::string::npos; });
 }
 
-/// Prepares the two models as far as they can be; what that takes is returned. Throws with the stage's own words where
-/// it refuses them.
+/// Prepares the two models as far as they can be; returns what that takes. Throws where the stage refuses them.
 Reading compare_models(const NewScene& scene, const fs::path& folder) {
   Reading reading;
   Said said = prepare(scene, reading, folder);

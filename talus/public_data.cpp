@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "talus/public_data.hpp"
+#include "talus/commands.hpp"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -10,20 +10,18 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
-#include <optional>
 
 #include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
-#include "common/gis/read_raster.hpp"
-#include "common/map/sum.hpp"
+#include "common/gis/raster_file.hpp"
+#include "common/map/statistics.hpp"
 #include "common/recipe/suggest.hpp"
 #include "common/recipe/toml.hpp"
-#include "common/stage/input_file.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
-#include "talus/temporary_folder.hpp"
 
 namespace talus::command {
 namespace fs = std::filesystem;
@@ -60,34 +58,33 @@ struct Example {
 };
 using Examples = std::map<std::string, Example>;
 
+std::string text_in(const toml::table& table, const char* key) { return table[key].value_or(std::string()); }
+
+void for_each_table(const toml::array* tables, const std::function<void(const toml::table&)>& take) {
+  if (tables == nullptr) return;
+  for (const toml::node& item : *tables)
+    if (const toml::table* table = item.as_table()) take(*table);
+}
+
 Example example_of(const toml::table& table) {
   Example example;
   for (const auto& [key, value] : table)
     if (const auto text = value.value<std::string>()) example.words[std::string(key.str())] = *text;
-  if (const toml::array* sources = table["sources"].as_array())
-    for (const toml::node& item : *sources)
-      if (const toml::table* source = item.as_table())
-        example.sources.push_back({(*source)["name"].value_or(std::string()),
-                                   (*source)["folder"].value_or(std::string()),
-                                   (*source)["sha256"].value_or(std::string())});
-  if (const toml::array* files = table["file"].as_array()) {
-    for (const toml::node& item : *files) {
-      const toml::table* file = item.as_table();
-      if (file == nullptr) continue;
-      DataFile made{(*file)["name"].value_or(std::string()), {}, {}, {}};
-      made.copy = (*file)["copy"].value_or(std::string());
-      made.sha256 = (*file)["sha256"].value_or(std::string());
-      made.cells = (*file)["cells"].value_or(0.0);
-      made.smallest = (*file)["smallest"].value_or(0.0);
-      made.largest = (*file)["largest"].value_or(0.0);
-      made.mean = (*file)["mean"].value_or(0.0);
-      if (const toml::array* sum = (*file)["sum"].as_array())
-        for (const toml::node& name : *sum) made.sum.push_back(name.value_or(std::string()));
-      for (Source& source : example.sources)
-        if (source.name == made.copy && source.sha256.empty()) source.sha256 = made.sha256;
-      example.files.push_back(std::move(made));
-    }
-  }
+  for_each_table(table["sources"].as_array(), [&](const toml::table& source) {
+    example.sources.push_back({text_in(source, "name"), text_in(source, "folder"), text_in(source, "sha256")});
+  });
+  for_each_table(table["file"].as_array(), [&](const toml::table& file) {
+    DataFile made{text_in(file, "name"), {}, text_in(file, "copy"), text_in(file, "sha256")};
+    made.cells = file["cells"].value_or(0.0);
+    made.smallest = file["smallest"].value_or(0.0);
+    made.largest = file["largest"].value_or(0.0);
+    made.mean = file["mean"].value_or(0.0);
+    if (const toml::array* sum = file["sum"].as_array())
+      for (const toml::node& name : *sum) made.sum.push_back(name.value_or(std::string()));
+    for (Source& source : example.sources)
+      if (source.name == made.copy && source.sha256.empty()) source.sha256 = made.sha256;
+    example.files.push_back(std::move(made));
+  });
   return example;
 }
 

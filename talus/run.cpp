@@ -1,23 +1,87 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "talus/run.hpp"
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "common/ensemble/names.hpp"
+#include "common/ensemble/member_table.hpp"
 #include "common/ensemble/options.hpp"
-#include "common/stage/output_lock.hpp"
+#include "common/error.hpp"
+#include "common/stage/files.hpp"
+#include "postprocess/stage.hpp"
+#include "preprocess/stage.hpp"
+#include "solver/stage.hpp"
+#include "talus/commands.hpp"
 
 namespace talus::command {
+
+Stage stage_called(const std::string& name) {
+  if (name == "preprocess") return preprocess::stage();
+  return name == "solve" ? solver::stage() : postprocess::stage();
+}
+
+StageCall call_of(const Request& request, const std::string& stage) {
+  StageCall call{.recipe = request.recipe, .out = request.shown, .set = request.set};
+  if (stage == "solve") call.flags.emplace_back("--on", request.on);
+  return call;
+}
+
+Dependencies depends_of(const Request& request, const std::string& stage) {
+  const Stage program = stage_called(stage);
+  return program.depends(open_call(program, call_of(request, stage)));
+}
+
+Said call_quietly(const std::string& stage, const StageCall& call) {
+  Said said;
+  const RedirectLog log([&](LogLevel level, const std::string& text) {
+    if (level == LogLevel::advice || level == LogLevel::warning) said.lines.emplace_back(level, text);
+  });
+  said.outcome = call_stage(stage_called(stage), call);
+  return said;
+}
+
+void add_table_faults(const Request& request, const std::string& stage, std::vector<Fault>& known) {
+  const Stage program = stage_called(stage);
+  try {
+    program.used_toml(open_call(program, call_of(request, stage)).recipe);
+  } catch (const RecipeError& error) {
+    for (const Fault& fault : error.faults()) {
+      const auto same = [&](const Fault& other) { return to_string(other) == to_string(fault); };
+      if (std::none_of(known.begin(), known.end(), same)) known.push_back(fault);
+    }
+  }
+}
+
+void require_tables(const Request& request) {
+  std::vector<Fault> faults;
+  for (const char* stage : stage_names) add_table_faults(request, stage, faults);
+  if (!faults.empty()) throw RecipeError(std::move(faults));
+}
+
+TemporaryFolder::TemporaryFolder(const std::string& name) {
+  std::string pattern = (std::filesystem::temp_directory_path() / (name + "-XXXXXX")).string();
+  if (::mkdtemp(pattern.data()) == nullptr)
+    throw DataError(Fault{pattern + ": no folder can be made there", std::generic_category().message(errno),
+                          "Set TMPDIR to a folder with room"});
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
 namespace fs = std::filesystem;
-namespace {
 
 bool lies_in(const fs::path& file, const fs::path& folder) {
   const fs::path below = file.lexically_relative(folder);
   return !below.empty() && *below.begin() != "..";
 }
+
+namespace {
 
 /// Whether a stage reads what the one named `maker` makes.
 bool reads_results_of(const std::string& maker, const Dependencies& reader, const fs::path& out) {
@@ -39,8 +103,7 @@ void tell_of_parts(const Request& request, const recipe::Recipe& recipe) {
                   counts.size(), counts.size() == 1 ? "" : "s"));
 }
 
-/// The stages that the scores rest on; a recipe may name a domain or a run from elsewhere, and counts of parts of an
-/// ensemble are taken as they are.
+/// The stages that the scores rest on; a recipe may name a domain or a run from elsewhere.
 std::vector<std::string> needed_stages(const Request& request, const recipe::Recipe& recipe) {
   const Dependencies scores = depends_of(request, "postprocess"), run = depends_of(request, "solve");
   std::vector<std::string> stages{"postprocess"};
@@ -58,9 +121,7 @@ std::vector<std::string> needed_stages(const Request& request, const recipe::Rec
   return stages;
 }
 
-/// Calls a stage, and reports what it ends with.
 int run_one(const std::string& stage, const StageCall& call) {
-  stop_if_interrupted("running the stages");
   const Stage program = stage_called(stage);
   const StageOutcome outcome = call_stage(program, call);
   if (outcome.code == ExitCode::success) print_results(outcome.results);
@@ -68,14 +129,15 @@ int run_one(const std::string& stage, const StageCall& call) {
 }
 
 int bring_up_to_date(const Request& request, const std::string& stage) {
+  stop_if_interrupted("running the stages");
   StageCall call = call_of(request, stage);
   call.if_outdated = true;
   if (stage == "solve") call.flags.emplace_back("--resume", "");
   return run_one(stage, call);
 }
 
-/// What talus-solve --plan prints.
 int print_plan(const Request& request) {
+  stop_if_interrupted("running the stages");
   StageCall call = call_of(request, "solve");
   call.flags.emplace_back("--plan", "");
   return run_one("solve", call);
@@ -95,6 +157,20 @@ int search_first(const Request& request) {
   return run_scene(before);
 }
 
+void require_run(const fs::path& folder) {
+  if (fs::exists(folder / "run.h5")) return;
+  throw DataError(Fault{folder.string() + ": there is no run.h5 in it", "",
+                        "Name the folder of results of a run: what --out was, or out beside its recipe"});
+}
+
+/// What was used in a folder is a recipe of it.
+fs::path recipe_in(const fs::path& folder) {
+  for (const char* name : {"postprocess.used.toml", "solve.used.toml"})
+    if (fs::exists(folder / name)) return folder / name;
+  throw DataError(Fault{folder.string() + ": neither postprocess.used.toml nor solve.used.toml is there",
+                        "they say what the run was computed with", "Run talus-postprocess on it again"});
+}
+
 }  // namespace
 
 int run_scene(const Request& request) {
@@ -111,6 +187,18 @@ int run_scene(const Request& request) {
   if (request.plan) return print_plan(request);
   if (!inner) log_info(fmt::format("{}: results in {}", recipe.scene_name(), request.out.string()));
   return 0;
+}
+
+int compare_runs(const fs::path& first, const fs::path& second, const Request& request) {
+  require_run(first);
+  require_run(second);
+  Request asked = request;
+  asked.recipe = recipe_in(first);
+  asked.out = fs::absolute(first).lexically_normal();
+  asked.shown = first;
+  StageCall call = call_of(asked, "postprocess");
+  call.flags.emplace_back("--against", second.string());
+  return run_one("postprocess", call);
 }
 
 }  // namespace talus::command

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "talus/slide.hpp"
+#include "talus/commands.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +32,7 @@ double round_up(double value) {
 }
 
 bool is_in(const Raster& raster, int column, int row) {
-  const MapGrid& grid = raster.grid;
-  return column >= 0 && row >= 0 && column < grid.columns && row < grid.rows && raster.at(column, row) > 0;
+  return raster.grid.holds(column, row) && raster.at(column, row) > 0;
 }
 
 /// Place and weight of what a raster of thickness holds.
@@ -67,7 +66,7 @@ double largest_head(const Slide& slide, const Raster& before, double from_x, dou
     const double share = static_cast<double>(i) / steps;
     const auto column = static_cast<int>((from_x + share * (to_x - from_x) - grid.west) / grid.cell);
     const auto row = static_cast<int>((from_y + share * (to_y - from_y) - grid.south) / grid.cell);
-    if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) continue;
+    if (!grid.holds(column, row)) continue;
     const double ground = before.at(column, row), line = slide.crown - share * slide.drop;
     if (std::isfinite(ground)) most = std::max(most, line - ground);
   }

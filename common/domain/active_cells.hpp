@@ -25,16 +25,14 @@ struct ActiveCells {
     int first = 0, last = -1;
     bool operator==(const Layers&) const = default;
     int count() const { return last - first + 1; }
-    /// Widens the range until it holds another one.
-    void add(const Layers& more);
+    void add(const Layers& more);  ///< widens the range until it holds another one
   };
 
   int columns = 0, rows = 0;   ///< of the map
   std::vector<Layers> blocks;  ///< [blocks across and up the map], row by row from the south-west
 
   ActiveCells() = default;
-  /// No cell of a map yet.
-  ActiveCells(int columns_of_map, int rows_of_map);
+  ActiveCells(int columns_of_map, int rows_of_map);  ///< no cell of a map yet
   bool operator==(const ActiveCells&) const = default;
 
   int blocks_across() const { return (columns + side - 1) / side; }
@@ -43,10 +41,8 @@ struct ActiveCells {
   Layers& block_of(int column, int row) { return blocks[block_index(column, row)]; }
   const Layers& block_of(int column, int row) const { return blocks[block_index(column, row)]; }
   bool holds(const std::array<int, 3>& cell) const;
-  /// Blocks that hold a cell.
-  std::size_t block_count() const;
-  /// Cells in all blocks.
-  std::size_t cell_count() const;
+  std::size_t block_count() const;  ///< blocks that hold a cell
+  std::size_t cell_count() const;   ///< cells in all blocks
 
  private:
   std::size_t block_index(int column, int row) const;

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// domain.vdb: what talus-preprocess hands to talus-solve. OpenVDB stays behind domain.cpp.
+// domain.vdb: what talus-preprocess hands to talus-solve.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,9 +11,10 @@
 
 #include "common/domain/active_cells.hpp"
 #include "common/domain/domain_place.hpp"
-#include "common/map/places.hpp"
+#include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
 #include "common/stage/findings.hpp"
+#include "common/stage/identity.hpp"
 
 namespace talus {
 
@@ -26,8 +26,7 @@ struct SeedPoints {
   std::vector<double> extent_x,
       extent_y;              // sides of the box that a point stands for; its height follows from the volume [m]
   std::vector<int> release;  // index into Domain::release_names
-  /// Number of points.
-  std::size_t size() const { return x.size(); }
+  std::size_t size() const { return x.size(); }  ///< number of points
 };
 
 /// The scene as the solver sees it. One column of the background grid stands over each map cell.
@@ -56,9 +55,19 @@ struct Domain {
 /// DataError (disk full, not writable).
 void write_domain(const std::filesystem::path& file, const Domain& domain);
 
-/// Read it back. Coordinates keep 1e-6 of a cell, volumes and heights are exact. Throws DataError: missing, truncated,
-/// changed since it was written, not a domain of this program, a mask "active" of another grid or not of whole blocks,
-/// numbers that cannot be (check_domain.hpp).
+/// Read it back. Coordinates keep 1e-6 of a cell, volumes and heights are exact. Throws DataError: missing, damaged,
+/// not a domain of this program, a mask "active" of another grid or not of whole blocks, numbers that cannot be.
 Domain read_domain(const std::filesystem::path& file);
+
+/// The provenance of a domain: the head of the file alone is read, its seal checked. Throws as read_domain() does.
+Facts domain_facts(const std::filesystem::path& file);
+
+/// This function multiplies the vertical thickness of what is released by `factor` > 0: release_thickness, the volumes
+/// of the released points and their heights above the ground that they lie on (the bed, or the erodible layers under
+/// them). The bed stays, and so does the outline; the surface before the failure follows the thickness. Erodible
+/// ground stays as it is, and the mask of active cells is dropped, since points may stand in other layers. Layers of
+/// points are stretched: as many points stand for more or less height, while talus-preprocess would seed others. Throws
+/// std::logic_error for a factor that is not positive.
+void scale_release(Domain& domain, double factor);
 
 }  // namespace talus

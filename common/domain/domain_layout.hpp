@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names inside domain.vdb, shared by its writer and its reader.
+// Names inside domain.vdb, shared by its writer and its reader, and whether its numbers are possible: every one is
+// looked at before the solver uses it.
 #pragma once
 
-#include <openvdb/openvdb.h>
-
+#include <filesystem>
 #include <string>
+
+#include <openvdb/openvdb.h>
 
 #include "common/domain/domain.hpp"
 
@@ -51,3 +53,15 @@ inline openvdb::math::Transform::Ptr transform(const MapGrid& grid, double layer
 }
 
 }  // namespace talus::layout
+
+namespace talus {
+
+/// Throws DataError where the grid cannot be: no cells, more than an int counts, sizes or places that are not finite.
+void check_domain_grid(const std::filesystem::path& file, const MapGrid& grid, double layer_height);
+
+/// Throws DataError that names the first number that cannot be: elevations beyond 100 km, thickness below zero, numbers
+/// of the bed that [solve.base] does not know or that are not finite, points outside the map, without volume or of a
+/// release that is not there, places outside the map or without a name. The grid has been checked before.
+void check_domain(const std::filesystem::path& file, const Domain& domain);
+
+}  // namespace talus

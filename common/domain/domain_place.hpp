@@ -18,8 +18,7 @@ struct DomainPlace {
   MapLine points;     ///< map coordinates [m]; one: a point
 
   bool operator==(const DomainPlace&) const = default;
-  /// Whether it is a line.
-  bool is_line() const { return points.size() > 1; }
+  bool is_line() const { return points.size() > 1; }  ///< whether it is a line
 };
 
 /// Whether a name is fit for the names of columns: letters, digits, - and _.

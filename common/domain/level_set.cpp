@@ -18,13 +18,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "common/domain/write_grids.hpp"
+#include "common/domain/grids.hpp"
 #include "common/error.hpp"
 #include "common/stage/checksum.hpp"
-#include "common/stage/crash_report.hpp"
-#include "common/stage/input_file.hpp"
+#include "common/stage/files.hpp"
+#include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
-#include "common/stage/write_fault.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -36,7 +35,6 @@ constexpr double band = 3;  // of a level set on either side of its surface, in 
 constexpr std::size_t most_facets = 50'000'000;
 constexpr auto write_it = "Write it again (Houdini: VDB from Polygons; OpenVDB: tools::meshToLevelSet)";
 
-/// What is asked for.
 struct Wanted {
   fs::path file;
   std::string grid;               ///< its name; empty: the only one
@@ -56,18 +54,16 @@ openvdb::FloatGrid::Ptr open_grid(const fs::path& file, const std::string& name)
     for (auto entry = archive.beginName(); entry != archive.endName(); ++entry) names.push_back(entry.gridName());
     std::sort(names.begin(), names.end());
     const bool known = std::find(names.begin(), names.end(), name) != names.end();
-    if ((name.empty() && names.size() != 1) || (!name.empty() && !known)) {
+    if ((name.empty() && names.size() != 1) || (!name.empty() && !known))
       refuse_file(
           file, name.empty() ? fmt::format("holds {} grids", names.size()) : fmt::format("holds no grid \"{}\"", name),
           fmt::format("its grids are: {}", fmt::join(names, ", ")), "Name one of them: grid = \"...\"");
-    }
     const auto grid = archive.readGrid(name.empty() ? names.front() : name);
     auto typed = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-    if (!typed || typed->getGridClass() != openvdb::GRID_LEVEL_SET) {
+    if (!typed || typed->getGridClass() != openvdb::GRID_LEVEL_SET)
       refuse_file(file, fmt::format("the grid \"{}\" is no level set", grid->getName()),
                   "a level set is a float grid of class \"level set\", negative inside the body",
                   "Write it as one (Houdini: VDB from Polygons; OpenVDB: tools::meshToLevelSet)");
-    }
     return typed;
   } catch (const openvdb::Exception& error) {
     refuse_file(file, "cannot be read", error.what(), write_it);
@@ -189,12 +185,11 @@ BodySurface surface_in(const Wanted& wanted, const openvdb::FloatGrid::Ptr& grid
   } catch (const std::length_error&) {
     refuse_fine(wanted, grid->getName(), surface);
   }
-  if (surface.facets.empty() || !(surface.volume > 0)) {
+  if (surface.facets.empty() || !(surface.volume > 0))
     refuse_file(
         file, fmt::format("the level set \"{}\" encloses nothing", grid->getName()),
         fmt::format("its surface has {} pieces", surface.facets.size()),
         "A level set is negative inside the body; write it with smaller voxels if the body is thinner than one");
-  }
   return surface;
 }
 
@@ -210,15 +205,13 @@ openvdb::FloatGrid::Ptr level_set_of(const SolidBody& body, double voxel, const 
   const int margin = static_cast<int>(band);
   auto accessor = grid->getAccessor();
   bool any = false;
-  for (int i = -margin; i <= last(0); ++i) {
-    for (int j = -margin; j <= last(1); ++j) {
+  for (int i = -margin; i <= last(0); ++i)
+    for (int j = -margin; j <= last(1); ++j)
       for (int k = -margin; k <= last(2); ++k) {
         const double d = body.distance(body.low[0] + i * voxel, body.low[1] + j * voxel, body.low[2] + k * voxel);
         if (std::abs(d) < band * voxel) accessor.setValueOn({i, j, k}, static_cast<float>(d));
         any = any || d < 0;
       }
-    }
-  }
   if (!any)
     refuse_file(file, fmt::format("the body \"{}\" lies between the voxels", body.name),
                 fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
@@ -229,8 +222,7 @@ openvdb::FloatGrid::Ptr level_set_of(const SolidBody& body, double voxel, const 
   return grid;
 }
 
-/// Bounds the memory of this process until the end of the scope: OpenVDB allocates what the sizes in a damaged file
-/// say.
+/// Bounds the memory of this process until the end of the scope: OpenVDB allocates what a damaged file asks for.
 class MemoryBound {
  public:
   explicit MemoryBound(double more) {

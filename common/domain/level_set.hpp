@@ -19,7 +19,6 @@ struct Facet {
   std::array<double, 3> area;    // along the outward normal [m2]
 };
 
-/// The surface of a body.
 struct BodySurface {
   std::vector<Facet> facets;
   double volume = 0;                                                             // enclosed [m3]
@@ -28,13 +27,12 @@ struct BodySurface {
 
 /// The zero surface of the level set called `grid` in `file`; with an empty name, of the only one there is. Facets are
 /// no longer than `largest` along each axis [m]. OpenVDB crashes on some damaged files of other programs
-/// (common/stage/crash_report.hpp). Throws DataError: no such file or grid, damaged, several grids and no name, not a
+/// (common/stage/signals.hpp). Throws DataError: no such file or grid, damaged, several grids and no name, not a
 /// level set, distances that are not finite, voxels without a size, no surface.
 BodySurface read_level_set(const std::filesystem::path& file, const std::string& grid,
                            const std::array<double, 3>& largest);
 
-/// A body to be written: within `low` to `high`, where `distance` from a place is negative. Distances need be exact
-/// beside the surface alone.
+/// A body to be written: from `low` to `high`, where `distance` is negative. Distances are exact beside it.
 struct SolidBody {
   std::string name;
   std::array<double, 3> low, high;                         // [m]
@@ -52,8 +50,7 @@ using BodyInMemory = std::shared_ptr<const VoxelBody>;
 /// no voxel lies in, or too large for such facets.
 BodySurface surface_of(const VoxelBody& body, const std::array<double, 3>& largest);
 
-/// All of them into one file (aside, renamed), in voxels of `voxel` [m]. Throws DataError: a body that no voxel lies
-/// in; disk full, not writable.
+/// All into one file (aside, renamed), in voxels of `voxel` [m]. Throws DataError: no voxel lies in a body; disk full.
 void write_level_sets(const std::filesystem::path& file, const std::vector<SolidBody>& bodies, double voxel);
 
 }  // namespace talus

@@ -1,21 +1,19 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <openvdb/io/Stream.h>
-#include <openvdb/points/PointAttribute.h>
-#include <openvdb/points/PointConversion.h>
-
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <new>
 
-#include "common/domain/check_domain.hpp"
+#include <openvdb/io/Stream.h>
+#include <openvdb/points/PointAttribute.h>
+#include <openvdb/points/PointConversion.h>
+
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
 #include "common/stage/checksum.hpp"
-#include "common/stage/crash_report.hpp"
-#include "common/stage/input_file.hpp"
-#include "common/stage/write_fault.hpp"
+#include "common/stage/files.hpp"
+#include "common/stage/signals.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -54,9 +52,9 @@ Contents read_all(const fs::path& file, std::ifstream& stream) {
 }
 
 /// Metadata by name, with a fault that says which is missing.
-class Facts {
+class StoredFacts {
  public:
-  Facts(const fs::path& file, const openvdb::MetaMap& meta) : file_(file), meta_(meta) {}
+  StoredFacts(const fs::path& file, const openvdb::MetaMap& meta) : file_(file), meta_(meta) {}
 
   template <class T>
   T get(const std::string& name) const {
@@ -86,7 +84,7 @@ void check_kind(const fs::path& file, const openvdb::MetaMap& meta) {
   const auto kind = meta.getMetadata<openvdb::StringMetadata>("kind");
   if (!kind || kind->value() != layout::kind)
     refuse(file, "not a domain of talus-preprocess", "an OpenVDB file of another program");
-  const auto format = Facts(file, meta).get<std::int64_t>("format");
+  const auto format = StoredFacts(file, meta).get<std::int64_t>("format");
   if (format != layout::format) refuse_format(file, format, layout::format, "Run talus-preprocess again");
 }
 
@@ -112,11 +110,10 @@ Raster sheet(const fs::path& file, const Contents& contents, const char* name, c
   return raster;
 }
 
-/// The mask of the background grid's cells, which must be made of whole blocks and be of the grid that the header
-/// names.
+/// The mask of the background grid's cells: it must be made of whole blocks, and be of the grid of the header.
 ActiveCells active_mask(const fs::path& file, const Contents& contents, const Domain& domain) {
   const auto grid = grid_named<openvdb::MaskGrid>(file, contents, layout::active);
-  const Facts facts(file, *grid);
+  const StoredFacts facts(file, *grid);
   if (facts.get<double>(layout::mask_h) != domain.grid.cell ||
       facts.get<double>(layout::mask_h_z) != domain.layer_height)
     refuse(file, "not a whole domain", "the mask \"active\" has other cells than the grid");
@@ -185,7 +182,7 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
 }
 
 /// Lines and points under names.
-std::vector<DomainPlace> named_places(const fs::path& file, const Facts& facts) {
+std::vector<DomainPlace> named_places(const fs::path& file, const StoredFacts& facts) {
   std::vector<DomainPlace> places;
   const std::size_t count = facts.count(layout::places);
   for (std::size_t i = 0; i < count; ++i) {
@@ -201,7 +198,7 @@ std::vector<DomainPlace> named_places(const fs::path& file, const Facts& facts) 
 }
 
 Domain assemble(const fs::path& file, const Contents& contents) {
-  const Facts facts(file, *contents.meta);
+  const StoredFacts facts(file, *contents.meta);
   Domain domain;
   domain.grid = {facts.number("columns"),      facts.number("rows"),        facts.get<double>("west_m"),
                  facts.get<double>("south_m"), facts.get<double>("cell_m"), facts.text("crs_wkt")};
@@ -235,6 +232,11 @@ Domain assemble(const fs::path& file, const Contents& contents) {
   return domain;
 }
 
+std::string text(const openvdb::MetaMap& meta, const std::string& name) {
+  const auto value = meta.getMetadata<openvdb::StringMetadata>(name);
+  return value ? value->value() : "";
+}
+
 }  // namespace
 
 Domain read_domain(const fs::path& file) {
@@ -249,6 +251,22 @@ Domain read_domain(const fs::path& file) {
   } catch (const openvdb::Exception& error) {
     refuse(file, "not a whole domain", error.what());
   }
+}
+
+Facts domain_facts(const fs::path& file) {
+  require_seal(file, again);
+  openvdb::initialize();
+  Facts facts;
+  try {
+    openvdb::io::File head(file.string());
+    head.open();  // grids are read when they are asked for
+    const auto meta = head.getMetadata();
+    for (std::size_t i = 0; !text(*meta, layout::numbered("fact_name", i)).empty(); ++i)
+      facts.emplace_back(text(*meta, layout::numbered("fact_name", i)), text(*meta, layout::numbered("fact_value", i)));
+  } catch (const openvdb::Exception& error) {
+    refuse(file, "not a whole domain", error.what(), again);
+  }
+  return facts;
 }
 
 }  // namespace talus

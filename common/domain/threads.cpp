@@ -6,7 +6,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <memory>
 
 namespace talus {
 namespace {
@@ -17,25 +16,21 @@ void call_if_loaded(const char* name, int value) {
   if (void* found = dlsym(RTLD_DEFAULT, name)) reinterpret_cast<void (*)(int)>(found)(value);
 }
 
+std::shared_ptr<void> limit_onetbb(int threads) {
+  return std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                               static_cast<std::size_t>(std::max(1, threads)));
+}
+
 }  // namespace
 
 void limit_threads_of_libraries(int threads) {
-  static std::unique_ptr<tbb::global_control> limit;
+  static std::shared_ptr<void> limit;
   limit.reset();
-  limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                static_cast<std::size_t>(std::max(1, threads)));
+  limit = limit_onetbb(threads);
   call_if_loaded("omp_set_num_threads", threads);
   call_if_loaded("openblas_set_num_threads", threads);
 }
 
-struct ThreadsOfLibraries::Limit {
-  tbb::global_control control;
-};
-
-ThreadsOfLibraries::ThreadsOfLibraries(int threads)
-    : limit_(
-          new Limit{{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(1, threads))}}) {}
-
-ThreadsOfLibraries::~ThreadsOfLibraries() = default;
+ThreadsOfLibraries::ThreadsOfLibraries(int threads) : limit_(limit_onetbb(threads)) {}
 
 }  // namespace talus

@@ -16,13 +16,9 @@ void limit_threads_of_libraries(int threads);
 class ThreadsOfLibraries {
  public:
   explicit ThreadsOfLibraries(int threads);
-  ThreadsOfLibraries(const ThreadsOfLibraries&) = delete;
-  ThreadsOfLibraries& operator=(const ThreadsOfLibraries&) = delete;
-  ~ThreadsOfLibraries();
 
  private:
-  struct Limit;
-  std::unique_ptr<Limit> limit_;
+  std::shared_ptr<void> limit_;
 };
 
 }  // namespace talus

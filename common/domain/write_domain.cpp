@@ -4,14 +4,17 @@
 #include <cmath>
 #include <numeric>
 
+#include <openvdb/points/PointAttribute.h>
+#include <openvdb/points/PointConversion.h>
+#include <openvdb/tools/PointIndexGrid.h>
+
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
-#include "common/domain/point_grid.hpp"
-#include "common/domain/write_grids.hpp"
-#include "common/map/bilinear.hpp"
+#include "common/domain/grids.hpp"
+#include "common/map/raster.hpp"
 #include "common/stage/checksum.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
-#include "common/stage/write_fault.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -36,21 +39,42 @@ std::vector<openvdb::Vec3d> positions_of(const Domain& domain, double bottom) {
   return positions;
 }
 
+/// Adds an attribute with one value for each point; `order` tells which of them stand in each leaf.
+template <class Value>
+void attach(openvdb::points::PointDataGrid& grid, const openvdb::tools::PointIndexGrid& order, const char* name,
+            const std::vector<Value>& values) {
+  auto& tree = grid.tree();
+  openvdb::points::appendAttribute(tree, name, openvdb::points::TypedAttributeArray<Value>::attributeType());
+  for (auto leaf = tree.beginLeaf(); leaf; ++leaf) {
+    openvdb::points::AttributeWriteHandle<Value> attribute(leaf->attributeArray(name));
+    openvdb::Index place = 0;
+    for (const auto index : order.tree().probeConstLeaf(leaf->origin())->indices())
+      attribute.set(place++, values[index]);
+    attribute.compact();
+  }
+}
+
 openvdb::GridBase::Ptr point_grid(const Domain& domain, double bottom) {
+  using openvdb::points::PointDataGrid, openvdb::tools::PointIndexGrid;
   const SeedPoints& points = domain.points;
-  PointGrid grid(positions_of(domain, bottom), *layout::transform(domain.grid, domain.layer_height, bottom));
+  const std::vector<openvdb::Vec3d> positions = positions_of(domain, bottom);
+  const openvdb::points::PointAttributeVector<openvdb::Vec3d> wrapped(positions);
+  const auto transform = layout::transform(domain.grid, domain.layer_height, bottom);
+  const auto order = openvdb::tools::createPointIndexGrid<PointIndexGrid>(wrapped, *transform);
+  const auto grid =
+      openvdb::points::createPointDataGrid<openvdb::points::NullCodec, PointDataGrid>(*order, wrapped, *transform);
   std::vector<std::int64_t> ids(points.size());
   std::iota(ids.begin(), ids.end(), 0);
-  grid.attach(layout::volume, points.volume);
-  grid.attach(layout::height, points.height);
-  grid.attach(layout::extent_x, points.extent_x);
-  grid.attach(layout::extent_y, points.extent_y);
-  grid.attach(layout::release, std::vector<std::int32_t>(points.release.begin(), points.release.end()));
-  grid.attach(layout::id, ids);
-  grid.grid()->setName(layout::points);
-  grid.grid()->insertMeta("units",
-                          openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
-  return grid.grid();
+  attach(*grid, *order, layout::volume, points.volume);
+  attach(*grid, *order, layout::height, points.height);
+  attach(*grid, *order, layout::extent_x, points.extent_x);
+  attach(*grid, *order, layout::extent_y, points.extent_y);
+  attach(*grid, *order, layout::release, std::vector<std::int32_t>(points.release.begin(), points.release.end()));
+  attach(*grid, *order, layout::id, ids);
+  grid->setName(layout::points);
+  grid->insertMeta("units",
+                   openvdb::StringMetadata("position m, volume m3, height m above the bed, vertical, extent m"));
+  return grid;
 }
 
 /// The cells of a raster that hold a number, leaf by leaf.
@@ -85,7 +109,7 @@ openvdb::GridBase::Ptr value_sheet(const Domain& domain, double bottom, const Ra
 openvdb::GridBase::Ptr active_mask(const Domain& domain, double bottom, const ActiveCells& cells) {
   auto grid = openvdb::MaskGrid::create();
   constexpr int side = ActiveCells::side;
-  for (int row = 0; row < cells.rows; row += side) {
+  for (int row = 0; row < cells.rows; row += side)
     for (int column = 0; column < cells.columns; column += side) {
       const ActiveCells::Layers& layers = cells.block_of(column, row);
       if (layers.count() <= 0) continue;
@@ -93,7 +117,6 @@ openvdb::GridBase::Ptr active_mask(const Domain& domain, double bottom, const Ac
                                 layers.last);
       grid->denseFill(openvdb::CoordBBox(openvdb::Coord(column, row, layers.first), last), true, true);
     }
-  }
   grid->setName(layout::active);
   grid->setTransform(layout::transform(domain.grid, domain.layer_height, bottom));
   grid->insertMeta(layout::mask_h, openvdb::DoubleMetadata(domain.grid.cell));
@@ -173,10 +196,9 @@ void write_domain(const fs::path& file, const Domain& domain) {
         value_sheet(domain, bottom, domain.release_thickness, layout::release_thickness),
         sheet<openvdb::MaskGrid>(domain, bottom, domain.terrain, layout::inside, [](double) { return true; }),
         active_mask(domain, bottom, active)};
-    for (const auto& [name, raster] : domain.bed) {
+    for (const auto& [name, raster] : domain.bed)
       grids.push_back(sheet<openvdb::DoubleGrid>(domain, bottom, raster, (layout::bed_prefix + name).c_str(),
                                                  [](double cell) { return cell; }));
-    }
     write_grids(pending.path(), file, grids, metadata_of(domain));
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/ensemble/budget_options.hpp"
+#include "common/ensemble/options.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -22,8 +22,8 @@ std::vector<std::string_view> names_of_rows() {
 }  // namespace
 
 const BudgetRow* find_budget_row(std::string_view name) {
-  const auto* found = std::find_if(std::begin(budget_rows), std::end(budget_rows),
-                                   [&](const BudgetRow& row) { return row.name == name; });
+  const auto* found =
+      std::ranges::find(budget_rows, name, [](const BudgetRow& row) { return std::string_view(row.name); });
   return found == std::end(budget_rows) ? nullptr : found;
 }
 

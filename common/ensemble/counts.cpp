@@ -4,16 +4,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/map/crop.hpp"
-#include "common/stage/identity.hpp"
+#include "common/map/raster.hpp"
 
 namespace talus {
+
+Footprint footprint_of(std::span<const double> thickness, double threshold) {
+  Footprint runs{0};
+  bool inside = false;
+  for (const double h : thickness) {
+    if ((h > threshold) != inside) {
+      inside = !inside;
+      runs.push_back(0);
+    }
+    ++runs.back();
+  }
+  return runs;
+}
+
+std::vector<std::uint8_t> cells_of(const Footprint& footprint, std::size_t cells) {
+  std::vector<std::uint8_t> inside;
+  inside.reserve(cells);
+  std::uint8_t value = 0;
+  for (const std::int32_t length : footprint) {
+    inside.insert(inside.end(), static_cast<std::size_t>(length), value);
+    value = value == 0 ? 1 : 0;
+  }
+  inside.resize(cells, 0);
+  return inside;
+}
+
+std::size_t covered_cells(const Footprint& footprint) {
+  std::size_t covered = 0;
+  for (std::size_t run = 1; run < footprint.size(); run += 2) covered += static_cast<std::size_t>(footprint[run]);
+  return covered;
+}
+
+KeptThickness keep_thickness(std::span<const double> thickness, double quantum) {
+  KeptThickness kept{footprint_of(thickness, 0), {}, quantum};
+  kept.values.reserve(covered_cells(kept.cells));
+  constexpr double most = std::numeric_limits<std::int32_t>::max();
+  for (const double h : thickness)
+    if (h > 0) kept.values.push_back(static_cast<std::int32_t>(std::lround(std::min(h / quantum, most))));
+  return kept;
+}
+
+std::vector<double> KeptThickness::thickness(std::size_t count) const {
+  const std::vector<std::uint8_t> inside = cells_of(cells, count);
+  std::vector<double> map(count, 0.0);
+  std::size_t next = 0;
+  for (std::size_t cell = 0; cell < count; ++cell)
+    if (inside[cell] != 0) map[cell] = quantum * values[next++];
+  return map;
+}
+
 namespace {
 
 const std::vector<double>& thresholds_of(const CountedMap& map, const ThresholdOptions& o) {
@@ -39,7 +88,7 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
     all.maps[m].add(counted_maps[m], part.maps[m], places);
   }
   for (std::int64_t k = part.part.first; k < part.part.end; ++k) {
-    const auto from = static_cast<std::size_t>(k - part.part.first), to = static_cast<std::size_t>(k - all.part.first);
+    const std::size_t from = part.place_of(k), to = all.place_of(k);
     if (part.states[from] == MemberState::waiting) continue;
     all.states[to] = part.states[from];
     all.results[to] = part.results[from];
@@ -55,9 +104,7 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
 }
 
 bool same_scene(const EnsembleScene& a, const EnsembleScene& b) {
-  return a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.grid.west == b.grid.west &&
-         a.grid.south == b.grid.south && a.grid.cell == b.grid.cell && a.threshold == b.threshold &&
-         a.tallied == b.tallied;
+  return a.grid.has_cells_of(b.grid) && a.threshold == b.threshold && a.tallied == b.tallied;
 }
 
 /// A cell to which something of a run came: among those of its maps, and its place among those that are kept.
@@ -108,10 +155,8 @@ void require_alike(const EnsembleCounts& all, const EnsembleCounts& part, const 
 
 /// The first member that both have done, or none.
 std::int64_t shared_member(const EnsembleCounts& all, const EnsembleCounts& part) {
-  for (std::int64_t k = part.part.first; k < part.part.end; ++k) {
-    const bool here = part.states[static_cast<std::size_t>(k - part.part.first)] != MemberState::waiting;
-    if (here && all.states[static_cast<std::size_t>(k)] != MemberState::waiting) return k;
-  }
+  for (std::int64_t k = part.part.first; k < part.part.end; ++k)
+    if (part.state_of(k) != MemberState::waiting && all.state_of(k) != MemberState::waiting) return k;
   return -1;
 }
 
@@ -129,12 +174,11 @@ std::vector<std::int64_t> EnsembleCounts::at_edge() const {
 
 MapGrid EnsembleCounts::grid_of(std::int64_t member) const {
   const auto other = grids.find(member);
-  return other != grids.end() ? other->second
-                              : cut(scene.grid, windows.at(static_cast<std::size_t>(member - part.first)));
+  return other != grids.end() ? other->second : cut(scene.grid, windows.at(place_of(member)));
 }
 
 void EnsembleCounts::add(std::int64_t member, const RunMaps& run, const MemberResult& result) {
-  const auto place = static_cast<std::size_t>(member - part.first);
+  const std::size_t place = place_of(member);
   const auto window = window_on(scene.grid, run.grid);
   if (!window && !other_cells) throw std::logic_error("EnsembleCounts: a member's grid is no window of the scene's");
   if (window)
@@ -169,12 +213,12 @@ void EnsembleCounts::add_finding(std::int64_t member, Finding finding) {
 }
 
 void EnsembleCounts::fail(std::int64_t member, std::string words) {
-  states.at(static_cast<std::size_t>(member - part.first)) = MemberState::failed;
+  states.at(place_of(member)) = MemberState::failed;
   add_in_order(failures, {member, std::move(words)});
 }
 
 void EnsembleCounts::leave_out(std::int64_t member, std::string words) {
-  states.at(static_cast<std::size_t>(member - part.first)) = MemberState::left_out;
+  states.at(place_of(member)) = MemberState::left_out;
   if (!words.empty()) add_in_order(failures, {member, std::move(words)});
 }
 
@@ -184,9 +228,7 @@ std::optional<CellWindow> window_on(const MapGrid& all, const MapGrid& part) {
   if (!same_lattice(all, part)) return std::nullopt;
   const CellWindow window{static_cast<int>(std::lround((part.west - all.west) / all.cell)),
                           static_cast<int>(std::lround((part.south - all.south) / all.cell)), part.columns, part.rows};
-  const bool inside = window.column >= 0 && window.row >= 0 && window.column + window.columns <= all.columns &&
-                      window.row + window.rows <= all.rows;
-  return inside ? std::optional(window) : std::nullopt;
+  return lies_in(window, all) ? std::optional(window) : std::nullopt;
 }
 
 EnsembleCounts empty_counts(EnsembleScene scene, std::int64_t members, const MemberRange& part,

@@ -1,22 +1,19 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// counts.h5: what talus-solve hands to talus-postprocess of an ensemble, or of a part of one.
+// counts.h5: what talus-solve hands to talus-postprocess of an ensemble or of a part of one; footprints of members.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "common/ensemble/footprint.hpp"
-#include "common/ensemble/kept_cells.hpp"
-#include "common/ensemble/kept_thickness.hpp"
-#include "common/ensemble/member_words.hpp"
-#include "common/ensemble/names.hpp"
+#include "common/ensemble/member_table.hpp"
 #include "common/ensemble/options.hpp"
 #include "common/ensemble/tally.hpp"
 #include "common/stage/findings.hpp"
@@ -24,30 +21,40 @@
 
 namespace talus {
 
-/// The numbers of one member's run; NaN where there is none.
+/// Lengths of runs of cells over the flat grid, the first outside, the second inside, and so on.
+using Footprint = std::vector<std::int32_t>;
+
+/// The footprint of what is thicker than `threshold` [m].
+Footprint footprint_of(std::span<const double> thickness, double threshold);
+
+/// 1 inside, 0 outside; `cells`: the number of cells of the grid.
+std::vector<std::uint8_t> cells_of(const Footprint& footprint, std::size_t cells);
+
+/// The number of cells inside.
+std::size_t covered_cells(const Footprint& footprint);
+
+/// Thickness of the cells where there is any, in whole multiples of a quantum.
+struct KeptThickness {
+  Footprint cells;                   ///< that are thicker than 0; empty: nothing is kept
+  std::vector<std::int32_t> values;  ///< of those cells, in their order [quanta]
+  double quantum = 0;                ///< [m]
+
+  bool kept() const { return !cells.empty(); }  ///< whether a map is kept, be it of nothing
+  /// The map, 0 where there is nothing [m]; `count`: its number of cells.
+  std::vector<double> thickness(std::size_t count) const;
+};
+
+/// Keeps a map of thickness in multiples of `quantum` [m]; NaN is nothing.
+KeptThickness keep_thickness(std::span<const double> thickness, double quantum);
+
+/// The numbers of one member's run, as result_numbers explains them; NaN where there is none.
 struct MemberResult {
-  double run_out = nan;            ///< plan distance from the crown to the deposit's farthest cell [m]
-  double drop = nan;               ///< crown's height over that cell [m]
-  double reach_ratio = nan;        ///< drop over run-out, H/L [-]
-  double flow_reach = nan;         ///< plan distance from the crown to the farthest cell ever covered [m]
-  double centre_travel = nan;      ///< plan way of the centre of mass from the release to the deposit [m]
-  double flow_area = nan;          ///< that was ever thicker than the threshold [m2]
-  double deposit_area = nan;       ///< that is so at the end [m2]
-  double volume_released = nan;    ///< [m3]
-  double volume_final = nan;       ///< [m3]
-  double volume_outflow = nan;     ///< [m3]
-  double largest_thickness = nan;  ///< [m]
-  double p99_thickness = nan;      ///< 99 % of the cells of that map that are above 0 are below [m]
-  double largest_deposit = nan;    ///< [m]
-  double p99_deposit = nan;        ///< 99 % of the cells of that map that are above 0 are below [m]
-  double largest_speed = nan;      ///< [m/s]
-  double p99_speed = nan;          ///< 99 % of the cells of that map that are above 0 are below [m/s]
-  double largest_pressure = nan;   ///< [kPa]
-  double p99_pressure = nan;       ///< 99 % of the cells of that map that are above 0 are below [kPa]
-  double time_end = nan;           ///< [s]
-  double steps = nan;              ///< number of steps
-  double wall_time = nan;          ///< [s]
-  double edge_cells = nan;         ///< number of cells at the edge of its grid to which something came
+  double run_out = nan, drop = nan, reach_ratio = nan, flow_reach = nan, centre_travel = nan;
+  double flow_area = nan, deposit_area = nan;
+  double volume_released = nan, volume_final = nan, volume_outflow = nan;
+  double largest_thickness = nan, largest_deposit = nan, largest_speed = nan, largest_pressure = nan;
+  double p99_thickness = nan, p99_deposit = nan, p99_speed = nan, p99_pressure = nan;
+  double time_end = nan, steps = nan, wall_time = nan, edge_cells = nan;
 };
 
 /// A number of MemberResult, wherever it goes.
@@ -87,7 +94,6 @@ inline constexpr ResultNumber result_numbers[] = {
     {"edge_cells", "1", "cells at the edge of the member's grid to which something came", &MemberResult::edge_cells},
 };
 
-/// What became of a member.
 enum class MemberState : std::uint8_t { waiting = 0, counted = 1, failed = 2, left_out = 3 };
 
 /// The scene of an ensemble, for maps and pages.
@@ -125,19 +131,17 @@ struct EnsembleCounts {
   Facts provenance;
   std::vector<Finding> findings;  ///< of the stages, then of members that ended, by member
 
-  /// The number of members of a state.
-  std::int64_t count(MemberState state) const;
+  /// Where a member of the part stands in the lists.
+  std::size_t place_of(std::int64_t member) const { return static_cast<std::size_t>(member - part.first); }
+  MemberState state_of(std::int64_t member) const { return states.at(place_of(member)); }
+  std::int64_t count(MemberState state) const;  ///< the number of members of a state
   /// Numbers of counted members that came to the edge of their grid, or left it.
   std::vector<std::int64_t> at_edge() const;
-  /// The grid on which a counted member's deposit is kept.
-  MapGrid grid_of(std::int64_t member) const;
-  /// The method counts a member's run. Throws std::logic_error where its grid is no window of the scene's, unless
-  /// members may have other cells.
+  MapGrid grid_of(std::int64_t member) const;  ///< the grid on which a counted member's deposit is kept
+  /// Counts a member's run. Throws std::logic_error where its grid is no window of the scene's and must be one.
   void add(std::int64_t member, const RunMaps& maps, const MemberResult& result);
-  /// The method notes what a member found.
-  void add_finding(std::int64_t member, Finding finding);
-  /// The method notes that a member failed.
-  void fail(std::int64_t member, std::string words);
+  void add_finding(std::int64_t member, Finding finding);  ///< notes what a member found
+  void fail(std::int64_t member, std::string words);       ///< notes that a member failed
   /// The method notes that a member is not to be run, and why; empty words: it has nothing to change.
   void leave_out(std::int64_t member, std::string words);
 

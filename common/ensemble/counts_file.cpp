@@ -11,19 +11,17 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/counts.hpp"
-#include "common/ensemble/ensemble_file.hpp"
-#include "common/ensemble/tally_file.hpp"
-#include "common/run/check_values.hpp"
-#include "common/run/grid_attributes.hpp"
+#include "common/ensemble/tally.hpp"
+#include "common/map/raster.hpp"
+#include "common/run/sealed_file.hpp"
 
 namespace talus {
 namespace {
 
-const EnsembleFileKind counts_kind{{"talus counts", "counts of an ensemble"}, "Run talus-solve again"};
+constexpr h5::Format counts_format{"talus counts", "counts of an ensemble"};
 
-template <class T>
-h5::Dims length_of(const std::vector<T>& list) {
-  return {static_cast<hsize_t>(list.size())};
+h5::File open_counts(const std::filesystem::path& path) {
+  return h5::open_sealed(path, {path, "Run talus-solve again"}, counts_format);
 }
 
 void write_footprints(h5::File& file, const std::string& group, const std::vector<Footprint>& footprints) {
@@ -34,16 +32,15 @@ void write_footprints(h5::File& file, const std::string& group, const std::vecto
     ends.push_back(static_cast<std::int64_t>(all.size()));
   }
   file.make_group(group);
-  file.write<std::int64_t>(group + "/ends", length_of(ends), ends);
-  file.write<std::int32_t>(group + "/runs", length_of(all), all);
+  file.write_list<std::int64_t>(group + "/ends", ends);
+  file.write_list<std::int32_t>(group + "/runs", all);
 }
 
 std::vector<Footprint> read_footprints(const h5::File& file, const std::string& group,
                                        const std::vector<std::int64_t>& cells) {
   const std::size_t count = cells.size();
-  const auto ends = file.read<std::int64_t>(group + "/ends", {static_cast<hsize_t>(count)});
-  const auto runs = file.read_list<std::int32_t>(group + "/runs");
-  h5::check_values<std::int32_t>(file, group + "/runs", runs, h5::not_negative);
+  const auto ends = file.read<std::int64_t>(group + "/ends", {count});
+  const auto runs = file.read_list<std::int32_t>(group + "/runs", h5::not_negative);
   std::vector<Footprint> footprints(count);
   std::int64_t begin = 0;
   for (std::size_t k = 0; k < count; begin = ends[k++]) {
@@ -73,7 +70,7 @@ void write_thickness(h5::File& file, const std::vector<KeptThickness>& members) 
   }
   write_footprints(file, thickness_group, cells);
   file.set_number(thickness_group, "quantum_m", first->quantum);
-  file.write<std::int32_t>(std::string(thickness_group) + "/values", length_of(values), values);
+  file.write_list<std::int32_t>(std::string(thickness_group) + "/values", values);
 }
 
 std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vector<std::int64_t>& of_grids) {
@@ -82,8 +79,7 @@ std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vecto
   const double quantum = h5::checked_number(file, thickness_group, "quantum_m", h5::not_negative);
   const std::vector<Footprint> cells = read_footprints(file, thickness_group, of_grids);
   const std::string path = std::string(thickness_group) + "/values";
-  const auto values = file.read_list<std::int32_t>(path);
-  h5::check_values<std::int32_t>(file, path, values, h5::not_negative);
+  const auto values = file.read_list<std::int32_t>(path, h5::not_negative);
   std::size_t inside = 0;
   for (const Footprint& one : cells) inside += covered_cells(one);
   if (inside != values.size())
@@ -98,26 +94,13 @@ std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vecto
   return members;
 }
 
-void write_windows(h5::File& file, const std::vector<CellWindow>& windows) {
-  std::vector<std::int32_t> numbers;
-  for (const CellWindow& w : windows) numbers.insert(numbers.end(), {w.column, w.row, w.columns, w.rows});
-  file.write<std::int32_t>("/members/window", {windows.size(), 4}, numbers);
-}
-
-std::vector<CellWindow> read_windows(const h5::File& file, std::size_t count, const MapGrid& grid) {
-  const auto numbers = file.read<std::int32_t>("/members/window", {static_cast<hsize_t>(count), 4});
-  std::vector<CellWindow> windows;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::int32_t* at = &numbers[4 * k];
-    const CellWindow w{at[0], at[1], at[2], at[3]};
-    const bool inside = w.column >= 0 && w.row >= 0 && w.columns >= 0 && w.rows >= 0 &&
-                        w.columns <= grid.columns - w.column && w.rows <= grid.rows - w.row;
-    if (!inside)
+std::vector<CellWindow> read_member_windows(const h5::File& file, std::size_t count, const MapGrid& grid) {
+  const auto windows = h5::read_windows(file, "/members/window", count);
+  for (std::size_t k = 0; k < count; ++k)
+    if (const CellWindow& w = windows[k]; !lies_in(w, grid))
       file.refuse(fmt::format("dataset /members/window holds {} x {} cells from {}, {} at place {}", w.columns, w.rows,
                               w.column, w.row, k),
                   fmt::format("the grid has {} x {}", grid.columns, grid.rows));
-    windows.push_back(w);
-  }
   return windows;
 }
 
@@ -137,7 +120,6 @@ std::map<std::int64_t, MapGrid> read_grids(const h5::File& file, const MemberRan
   return grids;
 }
 
-/// The number of cells of each window.
 std::vector<std::int64_t> cells_in(const std::vector<CellWindow>& windows) {
   std::vector<std::int64_t> cells;
   for (const CellWindow& w : windows) cells.push_back(std::int64_t{w.columns} * w.rows);
@@ -148,17 +130,17 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
   file.make_group("/members");
   std::vector<std::uint8_t> states;
   for (const MemberState state : counts.states) states.push_back(static_cast<std::uint8_t>(state));
-  file.write<std::uint8_t>("/members/state", length_of(states), states);
+  file.write_list<std::uint8_t>("/members/state", states);
   file.make_group("/members/results");
   for (const ResultNumber& number : result_numbers) {
     std::vector<double> values;
     for (const MemberResult& result : counts.results) values.push_back(result.*(number.value));
     const auto path = std::string("/members/results/") + number.name;
-    file.write<double>(path, length_of(values), values);
+    file.write_list<double>(path, values);
     file.set_text(path, "unit", number.unit);
     file.set_text(path, "long_name", number.meaning);
   }
-  write_windows(file, counts.windows);
+  h5::write_windows(file, "/members/window", counts.windows);
   write_footprints(file, "/members/release", counts.release);
   write_footprints(file, "/members/flow", counts.flow);
   write_footprints(file, "/members/deposit", counts.deposit);
@@ -176,9 +158,8 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
 /// Refuses members whose state, failures and footprints do not belong together.
 void check_members(const h5::File& file, const EnsembleCounts& counts) {
   const auto state_of = [&](std::int64_t member) {
-    const std::int64_t place = member - counts.part.first;
-    return place < 0 || place >= counts.part.count() ? MemberState::waiting
-                                                     : counts.states[static_cast<std::size_t>(place)];
+    const bool in_part = member >= counts.part.first && member < counts.part.end;
+    return in_part ? counts.state_of(member) : MemberState::waiting;
   };
   std::vector<std::int64_t> failed, told;
   for (std::size_t place = 0; place < counts.states.size(); ++place) {
@@ -196,29 +177,22 @@ void check_members(const h5::File& file, const EnsembleCounts& counts) {
   if (failed != told)
     file.refuse(fmt::format("{} members failed, and {} failures are told", failed.size(), told.size()),
                 "there is one for each of these members, in order");
-  for (const Finding& finding : counts.findings) {
-    const std::int64_t place = finding.member - counts.part.first;
-    if (finding.member == Finding::no_member) continue;
-    if (place < 0 || place >= counts.part.count() ||
-        counts.states[static_cast<std::size_t>(place)] == MemberState::waiting)
+  for (const Finding& finding : counts.findings)
+    if (finding.member != Finding::no_member && state_of(finding.member) == MemberState::waiting)
       file.refuse(fmt::format("dataset /findings names member {}", finding.member), "it has not been run");
-  }
 }
 
 void read_members(const h5::File& file, EnsembleCounts& counts) {
   const auto count = static_cast<hsize_t>(counts.part.count());
-  const auto states = file.read<std::uint8_t>("/members/state", {count});
-  h5::check_values<std::uint8_t>(file, "/members/state", states,
-                                 {.low = 0, .high = 3, .why = "there is no such state"});
-  for (const std::uint8_t state : states) counts.states.push_back(static_cast<MemberState>(state));
+  constexpr h5::Allowed a_state{.low = 0, .high = 3, .why = "there is no such state"};
+  for (const std::uint8_t state : file.read<std::uint8_t>("/members/state", {count}, a_state))
+    counts.states.push_back(static_cast<MemberState>(state));
   counts.results.resize(count);
   for (const ResultNumber& number : result_numbers) {
-    const auto path = std::string("/members/results/") + number.name;
-    const auto values = file.read<double>(path, {count});
-    h5::check_values<double>(file, path, values, h5::finite_or_none);
+    const auto values = file.read<double>(std::string("/members/results/") + number.name, {count}, h5::finite_or_none);
     for (std::size_t k = 0; k < values.size(); ++k) counts.results[k].*(number.value) = values[k];
   }
-  counts.windows = read_windows(file, counts.states.size(), counts.scene.grid);
+  counts.windows = read_member_windows(file, counts.states.size(), counts.scene.grid);
   counts.grids = read_grids(file, counts.part);
   std::vector<std::int64_t> cells = cells_in(counts.windows);
   counts.release = read_footprints(file, "/members/release", cells);
@@ -241,9 +215,9 @@ void write_scene(h5::File& file, const EnsembleScene& scene) {
   file.set_integer("/scene", "distribution", scene.tallied == Tallied::distribution ? 1 : 0);
   h5::write_grid(file, "/scene", scene.grid);
   if (scene.terrain.empty()) return;
-  file.write<double>("/scene/terrain", length_of(scene.terrain), scene.terrain);
-  file.write<double>("/scene/before", length_of(scene.before), scene.before);
-  file.write<double>("/scene/release_thickness", length_of(scene.release_thickness), scene.release_thickness);
+  file.write_list<double>("/scene/terrain", scene.terrain);
+  file.write_list<double>("/scene/before", scene.before);
+  file.write_list<double>("/scene/release_thickness", scene.release_thickness);
 }
 
 EnsembleScene read_scene(const h5::File& file) {
@@ -254,21 +228,18 @@ EnsembleScene read_scene(const h5::File& file) {
   scene.tallied = file.integer("/scene", "distribution") != 0 ? Tallied::distribution : Tallied::largest;
   scene.grid = h5::read_grid(file, "/scene");
   if (!file.exists("/scene/terrain")) return scene;
-  const auto read = [&](const std::string& path, const h5::Allowed& allowed) {
-    auto values = file.read<double>(path, {static_cast<hsize_t>(scene.grid.count())});
-    h5::check_values<double>(file, path, values, allowed);
-    return values;
-  };
-  scene.terrain = read("/scene/terrain", h5::finite_or_none);
-  scene.before = read("/scene/before", h5::finite_or_none);
-  scene.release_thickness = read("/scene/release_thickness", h5::not_negative_or_none);
+  const h5::Dims cells{scene.grid.count()};
+  scene.terrain = file.read<double>("/scene/terrain", cells, h5::finite_or_none);
+  scene.before = file.read<double>("/scene/before", cells, h5::finite_or_none);
+  scene.release_thickness = file.read<double>("/scene/release_thickness", cells, h5::not_negative_or_none);
   return scene;
 }
 
 }  // namespace
 
 void write_counts(const std::filesystem::path& path, const EnsembleCounts& counts) {
-  write_ensemble_file(path, counts_kind, [&](h5::File& file) {
+  h5::write_sealed(path, [&](h5::File& file) {
+    h5::set_format(file, counts_format);
     file.set_text("/", "fingerprint", counts.fingerprint);
     file.set_integer("/", "members", counts.members);
     file.set_integer("/", "first", counts.part.first);
@@ -284,7 +255,7 @@ void write_counts(const std::filesystem::path& path, const EnsembleCounts& count
 }
 
 EnsembleCounts read_counts(const std::filesystem::path& path) {
-  const h5::File file = open_ensemble_file(path, counts_kind);
+  const h5::File file = open_counts(path);
   EnsembleCounts counts;
   counts.fingerprint = file.text("/", "fingerprint");
   counts.members = file.integer("/", "members");
@@ -303,8 +274,6 @@ EnsembleCounts read_counts(const std::filesystem::path& path) {
   return counts;
 }
 
-Facts counts_facts(const std::filesystem::path& path) {
-  return h5::read_facts(open_ensemble_file(path, counts_kind), "/provenance");
-}
+Facts counts_facts(const std::filesystem::path& path) { return h5::read_facts(open_counts(path), "/provenance"); }
 
 }  // namespace talus

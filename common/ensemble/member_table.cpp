@@ -4,19 +4,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "common/ensemble/budget_options.hpp"
-#include "common/ensemble/ensemble_file.hpp"
-#include "common/recipe/values.hpp"
-#include "common/run/check_values.hpp"
-#include "common/run/grid_attributes.hpp"
+#include "common/ensemble/options.hpp"
+#include "common/recipe/recipe.hpp"
+#include "common/run/sealed_file.hpp"
+#include "common/whole_text.hpp"
 
 namespace talus {
+
+std::filesystem::path EnsemblePaths::domain(std::int64_t member) const {
+  return folder() / fmt::format("domain.{:05}.vdb", member);
+}
+
+std::filesystem::path EnsemblePaths::counts(const MemberRange& part) const {
+  return out / fmt::format("counts.{}-{}.h5", part.first, part.end);
+}
+
+std::filesystem::path EnsemblePaths::unfinished(const MemberRange& part) const {
+  return out / fmt::format("unfinished.{}-{}.h5", part.first, part.end);
+}
+
+std::filesystem::path EnsemblePaths::run_folder(std::int64_t member) const {
+  return folder() / fmt::format("{:05}", member);
+}
+
+std::vector<std::filesystem::path> EnsemblePaths::found_counts() const {
+  if (std::filesystem::exists(counts())) return {counts()};
+  static const std::regex of_a_part(R"(counts\.([0-9]{1,18})-[0-9]{1,18}\.h5)");
+  std::vector<std::pair<std::int64_t, std::filesystem::path>> parts;
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator(out, unreadable)) {
+    std::smatch match;
+    const std::string name = entry.path().filename().string();
+    if (std::regex_match(name, match, of_a_part)) parts.emplace_back(std::stoll(match[1]), entry.path());
+  }
+  std::sort(parts.begin(), parts.end());
+  std::vector<std::filesystem::path> files;
+  for (auto& [first, file] : parts) files.push_back(std::move(file));
+  return files;
+}
+
+void add_in_order(std::vector<MemberWords>& list, MemberWords words) {
+  list.insert(std::ranges::upper_bound(list, words.member, {}, &MemberWords::member), std::move(words));
+}
+
+void write_member_words(h5::File& file, const std::string& group, const std::vector<MemberWords>& list) {
+  file.make_group(group);
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const auto one = fmt::format("{}/{:06}", group, n);
+    file.make_group(one);
+    file.set_integer(one, "member", list[n].member);
+    file.set_text(one, "words", list[n].words);
+  }
+}
+
+std::vector<MemberWords> read_member_words(const h5::File& file, const std::string& group) {
+  std::vector<MemberWords> list;
+  if (!file.exists(group)) return list;
+  for (const std::string& name : file.children(group)) {
+    const auto one = fmt::format("{}/{}", group, name);
+    list.push_back({file.integer(one, "member"), file.text(one, "words")});
+  }
+  return list;
+}
+
 namespace {
 
-const EnsembleFileKind members_kind{{"talus members", "a table of members"}, "Run talus-preprocess again"};
+constexpr h5::Format members_format{"talus members", "a table of members"};
 
 /// Words of a column as one text, a line each.
 std::string lines_of(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, "\n")); }
@@ -33,22 +91,11 @@ std::string word_of_key(const std::string& word) {
   return word == "true" || word == "false" ? word : recipe::toml_text(word);
 }
 
-std::vector<std::string> words_of(const std::string& lines) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin < lines.size();) {
-    const auto end = std::min(lines.find('\n', begin), lines.size());
-    words.push_back(lines.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return words;
-}
-
 MemberColumn read_column(const h5::File& file, const std::string& path, std::int64_t count) {
   MemberColumn column;
   column.key = file.text(path, "key");
-  column.words = words_of(file.text(path, "words"));
-  column.values = file.read<double>(path, {static_cast<hsize_t>(count)});
-  h5::check_values<double>(file, path, column.values, h5::finite);
+  column.words = lines_in(file.text(path, "words"));
+  column.values = file.read<double>(path, {static_cast<hsize_t>(count)}, h5::finite);
   if (column.words.empty()) return column;
   for (const double value : column.values)
     if (value < 0 || value >= static_cast<double>(column.words.size()))
@@ -56,45 +103,20 @@ MemberColumn read_column(const h5::File& file, const std::string& path, std::int
   return column;
 }
 
-/// A list of texts without line breaks as a dataset of bytes: attributes hold 64 kB at most.
-void write_texts(h5::File& file, const std::string& path, const std::vector<std::string>& texts) {
-  const std::string all = lines_of(texts);
-  const std::vector<std::uint8_t> bytes(all.begin(), all.end());
-  file.write<std::uint8_t>(path, {bytes.size()}, bytes);
-}
-
-std::vector<std::string> read_texts(const h5::File& file, const std::string& path) {
-  const auto bytes = file.read_list<std::uint8_t>(path);
-  return words_of({bytes.begin(), bytes.end()});
-}
-
 void write_slides(h5::File& file, const SlideTable& slides) {
   file.make_group("/slides");
-  write_texts(file, "/slides/domains", slides.domains);
+  h5::write_text(file, "/slides/domains", lines_of(slides.domains));
   h5::write_grid(file, "/slides", slides.lattice);
-  std::vector<std::int32_t> windows;
-  for (const CellWindow& w : slides.windows) windows.insert(windows.end(), {w.column, w.row, w.columns, w.rows});
-  file.write<std::int32_t>("/slides/windows", {slides.windows.size(), 4}, windows);
+  h5::write_windows(file, "/slides/windows", slides.windows);
   file.make_group("/slides/ground");
   h5::write_grid(file, "/slides/ground", slides.ground.grid);
-  file.write<double>("/slides/ground/elevation", {slides.ground.values.size()}, slides.ground.values);
+  file.write_list<double>("/slides/ground/elevation", slides.ground.values);
 }
 
-/// Refuses a window that is not on the lattice.
-void check_window(const h5::File& file, const SlideTable& slides, const CellWindow& w) {
-  const MapGrid& grid = slides.lattice;
-  if (w.column >= 0 && w.row >= 0 && w.columns > 0 && w.rows > 0 && w.columns <= grid.columns - w.column &&
-      w.rows <= grid.rows - w.row)
-    return;
-  file.refuse(
-      fmt::format("dataset /slides/windows holds {} x {} cells from {}, {}", w.columns, w.rows, w.column, w.row),
-      fmt::format("the lattice has {} x {}", grid.columns, grid.rows));
-}
-
-/// A text for each member; empty where the file has none.
+/// A text for each member, written as one text by lines_of(): attributes hold 64 kB at most. Empty where there is none.
 std::vector<std::string> read_text_of_each(const h5::File& file, const std::string& path, std::int64_t count) {
   if (!file.exists(path)) return {};
-  std::vector<std::string> texts = read_texts(file, path);
+  std::vector<std::string> texts = lines_in(h5::read_text(file, path));
   if (texts.size() != static_cast<std::size_t>(count))
     file.refuse(fmt::format("dataset {} has {} lines", path, texts.size()), fmt::format("there are {} members", count));
   return texts;
@@ -104,15 +126,15 @@ SlideTable read_slides(const h5::File& file, std::int64_t count) {
   SlideTable slides;
   slides.domains = read_text_of_each(file, "/slides/domains", count);
   slides.lattice = h5::read_grid(file, "/slides");
-  const auto windows = file.read<std::int32_t>("/slides/windows", {static_cast<hsize_t>(count), 4});
-  for (std::size_t at = 0; at < windows.size(); at += 4) {
-    slides.windows.push_back({windows[at], windows[at + 1], windows[at + 2], windows[at + 3]});
-    check_window(file, slides, slides.windows.back());
-  }
+  slides.windows = h5::read_windows(file, "/slides/windows", static_cast<std::size_t>(count));
+  for (const CellWindow& w : slides.windows)
+    if (w.columns == 0 || w.rows == 0 || !lies_in(w, slides.lattice))
+      file.refuse(
+          fmt::format("dataset /slides/windows holds {} x {} cells from {}, {}", w.columns, w.rows, w.column, w.row),
+          fmt::format("the lattice has {} x {}", slides.lattice.columns, slides.lattice.rows));
   slides.ground.grid = h5::read_grid(file, "/slides/ground");
   slides.ground.values =
-      file.read<double>("/slides/ground/elevation", {static_cast<hsize_t>(slides.ground.grid.count())});
-  h5::check_values<double>(file, "/slides/ground/elevation", slides.ground.values, h5::finite_or_none);
+      file.read<double>("/slides/ground/elevation", {slides.ground.grid.count()}, h5::finite_or_none);
   return slides;
 }
 
@@ -142,18 +164,18 @@ std::string MemberTable::names_of(const std::vector<std::int64_t>& members, std:
 }
 
 const MemberWords* MemberTable::failure_of(std::int64_t member) const {
-  const auto found =
-      std::find_if(failures.begin(), failures.end(), [&](const auto& one) { return one.member == member; });
+  const auto found = std::ranges::find(failures, member, &MemberWords::member);
   return found == failures.end() ? nullptr : &*found;
 }
 
 const MemberColumn* MemberTable::find(const std::string& key) const {
-  const auto found = std::find_if(columns.begin(), columns.end(), [&](const auto& one) { return one.key == key; });
+  const auto found = std::ranges::find(columns, key, &MemberColumn::key);
   return found == columns.end() ? nullptr : &*found;
 }
 
 void write_member_table(const std::filesystem::path& path, const MemberTable& table) {
-  write_ensemble_file(path, members_kind, [&](h5::File& file) {
+  h5::write_sealed(path, [&](h5::File& file) {
+    h5::set_format(file, members_format);
     file.set_text("/", "design", table.design);
     file.set_integer("/", "seed", table.seed);
     file.set_integer("/", "members", table.count);
@@ -167,7 +189,7 @@ void write_member_table(const std::filesystem::path& path, const MemberTable& ta
     }
     file.write<std::uint8_t>("/own_domain", {static_cast<hsize_t>(table.count)}, table.own_domain);
     for (const auto& [where, texts] : {std::pair{"/names", &table.names}, std::pair{"/rows", &table.rows}})
-      if (!texts->empty()) write_texts(file, where, *texts);
+      if (!texts->empty()) h5::write_text(file, where, lines_of(*texts));
     if (table.slides) write_slides(file, *table.slides);
     write_member_words(file, "/failures", table.failures);
     h5::write_facts(file, "/provenance", table.provenance);
@@ -175,7 +197,7 @@ void write_member_table(const std::filesystem::path& path, const MemberTable& ta
 }
 
 MemberTable read_member_table(const std::filesystem::path& path) {
-  const h5::File file = open_ensemble_file(path, members_kind);
+  const h5::File file = h5::open_sealed(path, {path, "Run talus-preprocess again"}, members_format);
   MemberTable table;
   table.design = file.text("/", "design");
   table.seed = file.integer("/", "seed");

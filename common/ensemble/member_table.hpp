@@ -1,25 +1,67 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// members.h5: the members of an ensemble, which talus-preprocess draws and talus-solve runs.
+// The files of an ensemble by their names, and members.h5: its members, which talus-preprocess draws and talus-solve
+// runs.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "common/ensemble/member_words.hpp"
 #include "common/map/raster.hpp"
 #include "common/stage/identity.hpp"
 
 namespace talus {
 
+/// Members first <= k < end, counted from 0.
+struct MemberRange {
+  std::int64_t first = 0, end = 0;
+  std::int64_t count() const { return end - first; }  ///< number of members
+  bool operator==(const MemberRange&) const = default;
+};
+
+/// The names of an ensemble's files in the output folder `out`.
+struct EnsemblePaths {
+  std::filesystem::path out;
+
+  /// The table of members, which talus-preprocess writes.
+  std::filesystem::path members() const { return out / "members.h5"; }
+  std::filesystem::path domain(std::int64_t member) const;  ///< the domain of a member that has one of its own
+  /// The folder of the members' own domains, and of whole runs that are kept.
+  std::filesystem::path folder() const { return out / "members"; }
+  std::filesystem::path counts() const { return out / "counts.h5"; }  ///< the counts of all members
+  std::filesystem::path counts(const MemberRange& part) const;        ///< the counts of a part
+  /// What a computation of a part that was stopped has finished.
+  std::filesystem::path unfinished(const MemberRange& part) const;
+  std::filesystem::path run_folder(std::int64_t member) const;  ///< the folder of a member whose whole run is kept
+  /// The files of counts in the folder: counts.h5, else those of parts in the order of their members.
+  std::vector<std::filesystem::path> found_counts() const;
+};
+
+namespace h5 {
+class File;
+}
+
+struct MemberWords {
+  std::int64_t member = 0;
+  std::string words;
+  bool operator==(const MemberWords&) const = default;
+};
+
+/// Adds words behind those of the same and of lower members.
+void add_in_order(std::vector<MemberWords>& list, MemberWords words);
+
+/// Writes them as numbered groups in `group`.
+void write_member_words(h5::File& file, const std::string& group, const std::vector<MemberWords>& list);
+
+/// Reads them back; a file without the group has none. Throws DataError.
+std::vector<MemberWords> read_member_words(const h5::File& file, const std::string& group);
+
 /// The key by which the released thickness is scaled; the solver scales the points of a domain by it.
 inline constexpr const char* thickness_factor_key = "preprocess.thickness_factor";
 
-/// A key of the recipe and its value in each member.
 struct MemberColumn {
   std::string key;                 ///< with its tables: "solve.base.friction_angle_deg"
   std::vector<double> values;      ///< [members]; of words: their places in `words`
@@ -34,7 +76,6 @@ struct SlideTable {
   Raster ground;                     ///< the model over all windows, coarse, for pages: elevation [m]
 };
 
-/// The members of an ensemble.
 struct MemberTable {
   std::string design;            ///< as the recipe names it
   std::int64_t seed = 0;         ///< of the design
@@ -50,14 +91,12 @@ struct MemberTable {
 
   /// What a member's recipe has in the place of the base's, "key=value" each, of the keys that begin with `prefix`.
   std::vector<std::string> values_of(std::int64_t member, const std::string& prefix) const;
-  /// What a member is called: its name, else "member 12".
-  std::string name_of(std::int64_t member) const;
+  std::string name_of(std::int64_t member) const;  ///< what a member is called: its name, else "member 12"
   /// What members are called, those beyond `most` by their number: "north, south and 3 more".
   std::string names_of(const std::vector<std::int64_t>& members, std::size_t most) const;
   /// Why a member's domain cannot be made, null where it can.
   const MemberWords* failure_of(std::int64_t member) const;
-  /// The column of a key, null where it does not vary.
-  const MemberColumn* find(const std::string& key) const;
+  const MemberColumn* find(const std::string& key) const;  ///< the column of a key, null where it does not vary
 };
 
 /// Names of facts of a table of members.

@@ -13,7 +13,6 @@
 
 namespace talus::openturns {
 
-/// The distribution of one number.
 class Law {
  public:
   virtual ~Law() = default;
@@ -39,12 +38,10 @@ struct RankCorrelation {
   double value;
 };
 
-/// A normal copula.
 class Copula {
  public:
   virtual ~Copula() = default;
-  /// Independent shares 0 < u < 1 become shares that go together, by conditional quantiles (Rosenblatt 1952). The first
-  /// one stays.
+  /// Independent shares 0 < u < 1 made to go together by conditional quantiles (Rosenblatt 1952); the first one stays.
   virtual void bind(std::vector<double>& shares) const = 0;
 };
 
@@ -68,22 +65,20 @@ class Library {
   /// Places 0, 1, ... with shares that sum to one.
   virtual AnyLaw places(const std::vector<double>& shares) const = 0;
 
-  /// Nothing where no such correlations can be together: a matrix, that of the ranks or that of the normal variables,
-  /// is not positive definite.
+  /// Nothing where no such correlations can be together: the matrix of ranks or of normals is not positive definite.
   virtual std::shared_ptr<const Copula> copula(std::size_t keys, const std::vector<RankCorrelation>& ranks) const = 0;
 
   /// `count` members in the unit cube of the keys; with Design::sensitivity count (keys + 2) of them.
   virtual Lists draw(Design design, std::size_t count, std::size_t keys, unsigned long seed) const = 0;
 
   /// By Saltelli's estimators (2002, equations 14 and 18). `inputs`: a list of [size (d + 2)] values for each of d
-  /// inputs, whose rows are the sample A, the sample B, and for each input A with that input's values of B. `outputs`
-  /// likewise.
+  /// inputs, whose rows are sample A, sample B, and for each input A with its values of B. `outputs` likewise.
   virtual SobolIndices sobol_indices(const Lists& inputs, const std::vector<double>& outputs,
                                      std::size_t size) const = 0;
   /// Spearman's rank correlation of each input with the output.
   virtual std::vector<double> rank_correlations(const Lists& inputs, const std::vector<double>& outputs) const = 0;
   /// Standardised coefficients of a linear regression of the output's ranks on the inputs'. Empty where inputs depend
-  /// on one another linearly.
+  /// linearly.
   virtual std::vector<double> rank_regression(const Lists& inputs, const std::vector<double>& outputs) const = 0;
 };
 

@@ -3,15 +3,19 @@
 #include "common/ensemble/options.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <set>
 
 #include <fmt/format.h>
 
-#include "common/ensemble/slide_options.hpp"
-
 namespace talus {
 namespace {
+
+/// The words of a recipe, in the order of Design.
+constexpr std::array<std::string_view, 10> designs{"sobol",       "latin-hypercube", "optimal-latin-hypercube",
+                                                   "monte-carlo", "full-grid",       "one-at-a-time",
+                                                   "sensitivity", "table",           "budget",
+                                                   "slides"};
 
 /// The keys that a distribution takes, and whether it needs them.
 struct Parameters {
@@ -48,54 +52,50 @@ bool is_kept_word(const std::string& word) {
   return (is_number && !word.empty() && word.size() < 10) || word == "all" || word == "deposits";
 }
 
-/// What the rules of one [[ensemble.vary]] are written with.
-class VaryRules {
- public:
-  VaryRules(recipe::Visitor& v, const VaryOptions& options)
-      : v_(v), shown_(options.key.empty() ? "[[ensemble.vary]]" : "[[ensemble.vary]] of " + options.key) {}
-  void need(bool met, const std::string& what, const std::string& why, const std::string& mend) const {
-    v_.needs(met, {shown_ + ": " + what, why, mend});
-  }
-
- private:
-  recipe::Visitor& v_;
-  std::string shown_;
-};
-
 /// This function declares what a distribution needs of its bounds and moments, and what has no effect.
-void need_moments(const VaryRules& rules, const VaryOptions& o) {
+void need_moments(const auto& need, const VaryOptions& o) {
   const Parameters takes = parameters_of(o.distribution);
-  rules.need(!takes.bounds_needed || (o.low && o.high), "low or high is missing", "the distribution lies between them",
-             "Give both");
-  rules.need(takes.bounds_taken || (!o.low && !o.high), "low and high have no effect", "its values are listed",
-             "Leave them out");
-  rules.need(!o.low || !o.high || *o.low < *o.high, "low is not below high", "no value lies between them",
-             "Mend one of them");
-  rules.need(!takes.moments || (o.mean && o.deviation), "mean or deviation is missing",
-             "the distribution is given by them", "Give both");
-  rules.need(takes.moments || (!o.mean && !o.deviation), "mean and deviation have no effect",
-             "this distribution is not given by them", "Leave them out, or take distribution = \"normal\"");
-  rules.need(o.distribution != Distribution::lognormal || !o.mean || *o.mean > 0, "mean is not above 0",
-             "lognormal values are positive", "Give a positive mean, or take distribution = \"normal\"");
-  rules.need(takes.mode || !o.mode, "mode has no effect", "only a triangular distribution has one", "Leave it out");
-  rules.need(!takes.mode || (o.mode && o.low && o.high && *o.mode >= *o.low && *o.mode <= *o.high),
-             "mode is not between low and high", "a triangle's top lies over its base", "Give one that is");
+  need(!takes.bounds_needed || (o.low && o.high), "low or high is missing", "the distribution lies between them",
+       "Give both");
+  need(takes.bounds_taken || (!o.low && !o.high), "low and high have no effect", "its values are listed",
+       "Leave them out");
+  need(!o.low || !o.high || *o.low < *o.high, "low is not below high", "no value lies between them",
+       "Mend one of them");
+  need(!takes.moments || (o.mean && o.deviation), "mean or deviation is missing", "the distribution is given by them",
+       "Give both");
+  need(takes.moments || (!o.mean && !o.deviation), "mean and deviation have no effect",
+       "this distribution is not given by them", "Leave them out, or take distribution = \"normal\"");
+  need(o.distribution != Distribution::lognormal || !o.mean || *o.mean > 0, "mean is not above 0",
+       "lognormal values are positive", "Give a positive mean, or take distribution = \"normal\"");
+  need(takes.mode || !o.mode, "mode has no effect", "only a triangular distribution has one", "Leave it out");
+  need(!takes.mode || (o.mode && o.low && o.high && *o.mode >= *o.low && *o.mode <= *o.high),
+       "mode is not between low and high", "a triangle's top lies over its base", "Give one that is");
 }
 
 /// This function declares what a distribution needs of its values, and what has no effect.
-void need_values(const VaryRules& rules, const VaryOptions& o) {
+void need_values(const auto& need, const VaryOptions& o) {
   const bool discrete = o.distribution == Distribution::discrete;
   const std::size_t choices = o.values.size() + o.words.size();
-  rules.need(!discrete || choices > 0, "values are missing", "there is nothing to choose from", "Add values = [...]");
-  rules.need(discrete || choices == 0, "values have no effect", "the distribution is not discrete",
-             "Leave them out, or take distribution = \"discrete\"");
-  rules.need(o.weights.empty() || o.weights.size() == choices, "weights do not match the values",
-             fmt::format("there are {} of {}", o.weights.size(), choices), "Give one for each, or none");
-  rules.need(o.weights.empty() || *std::max_element(o.weights.begin(), o.weights.end()) > 0, "all weights are 0",
-             "nothing could be chosen", "Give a positive one");
-  rules.need((o.distribution == Distribution::table) == !o.table.empty(), "table and distribution do not go together",
-             "distribution = \"table\" is given by its file, and by nothing else", "Give both or neither");
+  need(!discrete || choices > 0, "values are missing", "there is nothing to choose from", "Add values = [...]");
+  need(discrete || choices == 0, "values have no effect", "the distribution is not discrete",
+       "Leave them out, or take distribution = \"discrete\"");
+  need(o.weights.empty() || o.weights.size() == choices, "weights do not match the values",
+       fmt::format("there are {} of {}", o.weights.size(), choices), "Give one for each, or none");
+  need(o.weights.empty() || *std::max_element(o.weights.begin(), o.weights.end()) > 0, "all weights are 0",
+       "nothing could be chosen", "Give a positive one");
+  need((o.distribution == Distribution::table) == !o.table.empty(), "table and distribution do not go together",
+       "distribution = \"table\" is given by its file, and by nothing else", "Give both or neither");
 }
+
+/// [ensemble] beside [slides]: each threshold takes two maps of the whole model.
+struct EnsembleOfSlides : EnsembleOptions {
+  EnsembleOfSlides() {
+    design = Design::slides;
+    thresholds = {.thickness = {0.1, 0.5, 1}, .deposit = {}, .speed = {}, .pressure = {3, 30}, .arrival = {}};
+  }
+};
+
+constexpr recipe::Range steep{0, 90, true, true};
 
 }  // namespace
 
@@ -119,10 +119,12 @@ void VaryOptions::describe(recipe::Visitor& v) {
   v.names("words", words, {}, "discrete: the words that it takes, such as the names of laws");
   v.numbers("weights", weights, recipe::not_negative, "discrete: their probabilities, up to a factor; none: alike");
   v.path("table", table, "table: a CSV file of values and their probability densities, which are joined by lines");
-  const VaryRules rules(v, *this);
+  const auto need = [&](bool met, const std::string& what, const std::string& why, const std::string& mend) {
+    v.needs(met, {(key.empty() ? "[[ensemble.vary]]: " : "[[ensemble.vary]] of " + key + ": ") + what, why, mend});
+  };
   v.needs(!key.empty(), {"[[ensemble.vary]] without a key", "nothing would vary", "Add key = \"solve. ...\""});
-  need_moments(rules, *this);
-  need_values(rules, *this);
+  need_moments(need, *this);
+  need_values(need, *this);
 }
 
 void CorrelationOptions::describe(recipe::Visitor& v) {
@@ -156,21 +158,13 @@ void ThresholdOptions::describe(recipe::Visitor& v) {
 
 void EnsembleOptions::describe(recipe::Visitor& v) {
   v.integer("members", members, {0, most_members}, "number of runs; 0: one run, no ensemble");
-  recipe::choice(
-      v, "design", design,
-      {{design_name(Design::sobol), Design::sobol},
-       {design_name(Design::latin_hypercube), Design::latin_hypercube},
-       {design_name(Design::optimal_hypercube), Design::optimal_hypercube},
-       {design_name(Design::monte_carlo), Design::monte_carlo},
-       {design_name(Design::full_grid), Design::full_grid},
-       {design_name(Design::one_at_a_time), Design::one_at_a_time},
-       {design_name(Design::sensitivity), Design::sensitivity},
-       {design_name(Design::table), Design::table},
-       {design_name(Design::budget), Design::budget},
-       {design_name(Design::slides), Design::slides}},
+  int place = static_cast<int>(design);
+  v.one_of(
+      "design", place, {designs.begin(), designs.end()},
       "how the members are drawn; full-grid, one-at-a-time, table and budget give their number themselves, and "
       "sensitivity takes the largest number up to members that it can; budget: the recipe and single changes of it, "
       "members and [[ensemble.vary]] being left aside; slides: those of [slides], the default beside that table");
+  design = static_cast<Design>(place);
   v.integer("levels", levels, {2, 1000}, "full-grid, one-at-a-time: quantiles of each key");
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
   v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
@@ -212,21 +206,7 @@ void EnsembleOptions::check(std::vector<Fault>& faults) const {
   }
 }
 
-const char* design_name(Design design) {
-  switch (design) {
-    case Design::sobol: return "sobol";
-    case Design::latin_hypercube: return "latin-hypercube";
-    case Design::optimal_hypercube: return "optimal-latin-hypercube";
-    case Design::monte_carlo: return "monte-carlo";
-    case Design::full_grid: return "full-grid";
-    case Design::one_at_a_time: return "one-at-a-time";
-    case Design::sensitivity: return "sensitivity";
-    case Design::budget: return "budget";
-    case Design::slides: return "slides";
-    case Design::table: break;
-  }
-  return "table";
-}
+std::string design_name(Design design) { return std::string(designs.at(static_cast<std::size_t>(design))); }
 
 Fault EnsembleOptions::too_many_failed(const std::string& what, const std::string& first) const {
   if (is_budget())
@@ -245,18 +225,6 @@ void EnsembleOptions::check_kept(std::int64_t count) const {
                          "Name one that is there"});
 }
 
-namespace {
-
-/// [ensemble] beside [slides]: each threshold takes two maps of the whole model.
-struct EnsembleOfSlides : EnsembleOptions {
-  EnsembleOfSlides() {
-    design = Design::slides;
-    thresholds = {.thickness = {0.1, 0.5, 1}, .deposit = {}, .speed = {}, .pressure = {3, 30}, .arrival = {}};
-  }
-};
-
-}  // namespace
-
 EnsembleOptions ensemble_of(const recipe::Recipe& recipe) {
   if (!slides_of(recipe).on()) {
     auto ensemble = recipe.read<EnsembleOptions>("ensemble");
@@ -273,5 +241,61 @@ EnsembleOptions ensemble_of(const recipe::Recipe& recipe) {
                        "Leave [slides] out, or give failed_share, keep and thresholds alone in [ensemble]"});
   return ensemble;
 }
+
+void SlideKeyOptions::describe(recipe::Visitor& v) {
+  v.text("key", key,
+         "a key of [preprocess] or [solve] with its tables: solve.base.friction_angle_deg; what is released: "
+         "preprocess.release[0].thickness_m (base_dem), preprocess.source.sliding_surface.depth_m or volume_m3 "
+         "(before_dem)");
+  v.text("attribute", attribute, "the attribute of the polygons that holds its value");
+  v.needs(!key.empty() && !attribute.empty(), {"[[slides.set]] without key or attribute", "nothing would be set",
+                                               "Write key = \"solve. ...\" and attribute = \"...\""});
+}
+
+void ScenarioOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "name of the slide");
+  v.path("outline", outline, "vector file of its polygons: FILE|layername=LAYER|subset=CONDITION");
+  v.names("set", set, {}, "values of keys, \"key=value\" each: \"preprocess.release[0].thickness_m=3\"");
+  const std::string shown = name.empty() ? "[[slides.scenario]]" : "[[slides.scenario]] " + name;
+  v.needs(!outline.empty(), {shown + " has no outline", "its polygons are not known",
+                             "Give outline = \"FILE|layername=LAYER|subset=CONDITION\""});
+  v.needs(!name.empty(), {"[[slides.scenario]] without a name", "results are told apart by name", "Name it"});
+}
+
+void SlideOptions::describe(recipe::Visitor& v) {
+  v.path("outlines", outlines,
+         "vector file of polygons over the model of [preprocess], each a slide: FILE|layername=LAYER|subset=CONDITION");
+  v.text("name_from", name_from, "attribute that holds their names; empty = slide-1, slide-2 and so on by feature id");
+  v.optional_number("margin_m", margin, recipe::not_negative,
+                    "the domain of a slide is the rectangle around its outline, and this on all sides");
+  v.number(
+      "reach_angle_deg", reach_angle, steep,
+      "without margin_m: the domain holds all ground that lies below a line from the slide's highest point at this "
+      "angle");
+  recipe::choice(v, "at_edge", at_edge, {{"flag", SlideAtEdge::flag}, {"fail", SlideAtEdge::fail}},
+                 "a slide that comes to the edge of its domain is counted and named, or counts as failed");
+  recipe::list(v, "set", vary, "a key of the recipe that takes the value of an attribute");
+  recipe::list(v, "scenario", scenario, "a slide that is listed here");
+}
+
+void SlideOptions::check(std::vector<Fault>& faults) const {
+  if (!on()) return;
+  const bool by_layer = !outlines.empty() || !name_from.empty() || !vary.empty();
+  if (!scenario.empty() && by_layer)
+    faults.push_back({"[slides]: outlines or attributes beside [[slides.scenario]]",
+                      "a recipe that lists slides gives their outlines, names and values itself",
+                      "Give these in [[slides.scenario]], or leave that out and have every polygon a slide"});
+  std::set<std::string> keys, names;
+  for (const SlideKeyOptions& one : vary)
+    if (!keys.insert(one.key).second)
+      faults.push_back(
+          {"[[slides.set]] of " + one.key + " is there twice", "one value would hide the other", "Leave one out"});
+  for (const ScenarioOptions& one : scenario)
+    if (!names.insert(one.name).second)
+      faults.push_back({fmt::format("[[slides.scenario]]: name \"{}\" is taken", one.name),
+                        "results are told apart by name", "Name it otherwise"});
+}
+
+SlideOptions slides_of(const recipe::Recipe& recipe) { return recipe.read<SlideOptions>("slides"); }
 
 }  // namespace talus

@@ -8,12 +8,74 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "common/ensemble/budget_options.hpp"
 #include "common/recipe/recipe.hpp"
 
 namespace talus {
+
+/// Where the doubt of a row comes from: from how the run was computed, or from what is not known of the slide.
+enum class BudgetKind { numerical, physical };
+
+/// A row of an error budget: a doubt, asked by one member or by several.
+struct BudgetRow {
+  const char* name;  ///< in recipes and files: "cells"
+  BudgetKind kind;
+  const char* title;                      ///< for tables
+  std::string_view one = {}, other = {};  ///< ends of its members' names: "-less", "-more"; both empty: it has one
+};
+
+inline constexpr std::string_view survey_row = "survey";  ///< with as many members as there are draws
+
+/// All rows, in the order of members.
+inline constexpr BudgetRow budget_rows[] = {
+    {"step", BudgetKind::numerical, "size of the steps"},
+    {"modulus", BudgetKind::numerical, "stiffness"},
+    {"integrator", BudgetKind::numerical, "kind of steps"},
+    {"transfer", BudgetKind::numerical, "transfer between points and grid"},
+    {"cells", BudgetKind::numerical, "size of the cells"},
+    {"friction", BudgetKind::physical, "friction at the bed", "-less", "-more"},
+    {"drag", BudgetKind::physical, "drag at the bed", "-less", "-more"},
+    {"weakening", BudgetKind::physical, "law of the bed", "-rest", "-fast"},
+    {"strength", BudgetKind::physical, "friction inside", "-less", "-more"},
+    {"survey", BudgetKind::physical, "error of the survey"},
+    {"own", BudgetKind::physical, "change of the recipe's own"},
+    {"own-numerical", BudgetKind::numerical, "change of the recipe's own"},
+};
+
+/// The row of a name; null where there is none.
+const BudgetRow* find_budget_row(std::string_view name);
+
+/// A member that the recipe itself names.
+struct OwnChange {
+  std::string name;
+  BudgetKind kind = BudgetKind::physical;
+  std::vector<std::string> set;  ///< "solve.base.law=voellmy"
+  void describe(recipe::Visitor& v);
+};
+
+/// The keys of [ensemble.budget].
+struct BudgetOptions {
+  std::vector<std::string> leave_out;  ///< names of rows
+  double cell_factor = 2;              ///< sides of the other cells over those of the run
+  double friction_doubt = 0.1;         ///< of a coefficient of friction, or of an angle's tangent, as a share of it
+  double drag_doubt = 0.3;             ///< of the drag, as a share of it
+  int survey_draws = 2;                ///< members with an error of the survey each
+  std::vector<OwnChange> changes;      ///< [[ensemble.budget.run]]
+  void describe(recipe::Visitor& v);
+  /// The method adds the faults of a budget without changes, and of members that share a name.
+  void check(std::vector<Fault>& faults) const;
+  bool has(std::string_view row) const;  ///< whether a row is made
+};
+
+struct BudgetMember {
+  std::string name;  ///< "friction-less"
+  std::string row;   ///< "friction"; empty: the recipe itself
+};
+
+/// The members that a budget may have, the recipe itself first. Not all rows apply to every recipe.
+std::vector<BudgetMember> budget_members(const BudgetOptions& options);
 
 /// How the members are drawn from the distributions.
 enum class Design {
@@ -30,12 +92,11 @@ enum class Design {
 };
 
 /// The word of a recipe for a design: "latin-hypercube".
-const char* design_name(Design design);
+std::string design_name(Design design);
 
 /// The largest number of members.
 inline constexpr int most_members = 1'000'000;
 
-/// The distribution of a key.
 enum class Distribution { uniform, normal, lognormal, triangular, beta, discrete, table };
 
 /// A key of the recipe that varies from member to member.
@@ -100,7 +161,6 @@ struct EnsembleOptions {
   /// The method adds the faults of keys that are given twice, or whose correlations name what does not vary.
   void check(std::vector<Fault>& faults) const;
 
-  /// Whether the recipe asks for an ensemble.
   bool on() const { return members > 0 || is_budget() || design == Design::slides; }
   /// Whether its members are single changes of the recipe.
   bool is_budget() const { return design == Design::budget; }
@@ -112,12 +172,47 @@ struct EnsembleOptions {
   Fault too_many_failed(const std::string& what, const std::string& first) const;
   /// Whether `keep` has a word: "all", "deposits", or the number of a member.
   bool keeps(const std::string& word) const;
-  /// Refuses (RecipeError) a `keep` that names a member beyond so many.
-  void check_kept(std::int64_t count) const;
+  void check_kept(std::int64_t count) const;  ///< refuses (RecipeError) a `keep` that names a member beyond so many
 };
 
 /// The [ensemble] of a recipe; not on where it has none. Beside [slides] its design is Design::slides, with fewer
 /// thresholds where the recipe gives none. Throws RecipeError: [slides] beside members that are drawn.
 EnsembleOptions ensemble_of(const recipe::Recipe& recipe);
+
+/// A key of the recipe that takes the value of an attribute of each slide's polygon.
+struct SlideKeyOptions {
+  std::string key;  ///< with all its tables: "solve.base.friction_angle_deg"
+  std::string attribute;
+  void describe(recipe::Visitor& v);
+};
+
+/// A slide that the recipe itself lists.
+struct ScenarioOptions {
+  std::string name;
+  std::filesystem::path outline;  ///< its polygons, a vector source
+  std::vector<std::string> set;   ///< "key=value" of the recipe
+  void describe(recipe::Visitor& v);
+};
+
+/// What becomes of a slide that comes to the edge of its window.
+enum class SlideAtEdge { flag, fail };
+
+/// The keys of [slides].
+struct SlideOptions {
+  std::filesystem::path outlines;  ///< a vector source of polygons, a slide each
+  std::string name_from;           ///< attribute; empty: not given
+  std::optional<double> margin;    ///< around the outline [m]
+  double reach_angle = 11;         ///< of the window where no margin is given [degrees]
+  SlideAtEdge at_edge = SlideAtEdge::flag;
+  std::vector<SlideKeyOptions> vary;
+  std::vector<ScenarioOptions> scenario;
+  void describe(recipe::Visitor& v);
+  void check(std::vector<Fault>& faults) const;  ///< adds the faults of keys that contradict one another
+
+  bool on() const { return !outlines.empty() || !scenario.empty(); }  ///< whether the recipe asks for many slides
+};
+
+/// The [slides] of a recipe; not on where it has none. Throws RecipeError.
+SlideOptions slides_of(const recipe::Recipe& recipe);
 
 }  // namespace talus

@@ -7,7 +7,57 @@
 #include <numeric>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
+#include "common/run/sealed_file.hpp"
+
 namespace talus {
+
+KeptCells::KeptCells(const MapGrid& grid)
+    : columns_(grid.columns),
+      rows_(grid.rows),
+      blocks_across_((grid.columns + side - 1) / side),
+      slot_of_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>((grid.rows + side - 1) / side), -1) {
+}
+
+std::size_t KeptCells::find(int column, int row) const {
+  const int block = row / side * blocks_across_ + column / side;
+  const std::int32_t slot = slot_of_[static_cast<std::size_t>(block)];
+  if (slot < 0) return none;
+  return static_cast<std::size_t>(slot) * of_block + static_cast<std::size_t>(row % side * side + column % side);
+}
+
+std::size_t KeptCells::keep(int column, int row) {
+  return keep_block(row / side * blocks_across_ + column / side) +
+         static_cast<std::size_t>(row % side * side + column % side);
+}
+
+std::size_t KeptCells::keep_block(std::int32_t block) {
+  std::int32_t& slot = slot_of_[static_cast<std::size_t>(block)];
+  if (slot < 0) {
+    slot = static_cast<std::int32_t>(blocks_.size());
+    blocks_.push_back(block);
+  }
+  return static_cast<std::size_t>(slot) * of_block;
+}
+
+std::array<int, 2> KeptCells::cell(std::size_t place) const {
+  const std::int32_t block = blocks_[place / of_block];
+  const int within = static_cast<int>(place % of_block);
+  return {block % blocks_across_ * side + within % side, block / blocks_across_ * side + within / side};
+}
+
+std::vector<std::size_t> KeptCells::in_order() const {
+  std::vector<std::size_t> slots(blocks_.size());
+  std::iota(slots.begin(), slots.end(), std::size_t{0});
+  std::sort(slots.begin(), slots.end(), [&](std::size_t a, std::size_t b) { return blocks_[a] < blocks_[b]; });
+  std::vector<std::size_t> places;
+  places.reserve(count());
+  for (const std::size_t slot : slots)
+    for (std::size_t n = 0; n < of_block; ++n) places.push_back(slot * of_block + n);
+  return places;
+}
+
 namespace {
 
 /// The largest number of quanta that is counted: its square, summed over a million members, is a 64-bit number.
@@ -21,6 +71,76 @@ std::int64_t quanta_of(const CountedMap& map, double value) {
 std::int32_t further(const CountedMap& map, std::int32_t a, std::int32_t b) {
   if (a < 0 || b < 0) return std::max(a, b);
   return map.early ? std::min(a, b) : std::max(a, b);
+}
+
+std::vector<std::uint32_t> read_counted(const h5::File& file, const std::string& path, std::size_t cells,
+                                        std::int64_t most) {
+  const h5::Allowed allowed{.low = 0, .high = static_cast<double>(most), .why = "there are not so many members"};
+  const auto values = file.read<std::int32_t>(path, {cells}, allowed);
+  return {values.begin(), values.end()};
+}
+
+/// Writes values by place in the order of the file, as the numbers that it holds.
+template <class Stored, class T>
+void write_sorted(h5::File& file, const std::string& path, const std::vector<T>& values,
+                  const std::vector<std::size_t>& order) {
+  std::vector<Stored> sorted;
+  sorted.reserve(order.size());
+  for (const std::size_t place : order) sorted.push_back(static_cast<Stored>(values[place]));
+  file.write_list<Stored>(path, sorted);
+}
+
+void write_histograms(h5::File& file, const std::string& group, const CountedMap& map, const CellHistograms& histograms,
+                      const std::vector<std::size_t>& order) {
+  const auto edges = bin_edges(map);
+  file.write_list<std::int64_t>(group + "/bin_edges", edges);
+  std::vector<std::int32_t> cells, bins;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const auto counts = histograms.of(order[n]);
+    if (counts.empty()) continue;
+    cells.push_back(static_cast<std::int32_t>(n));
+    bins.insert(bins.end(), counts.begin(), counts.end());
+  }
+  file.write_list<std::int32_t>(group + "/histogram_cells", cells);
+  file.write<std::int32_t>(group + "/histograms", {cells.size(), histogram_bins}, bins);
+}
+
+void read_histograms(const h5::File& file, const std::string& group, const CountedMap& map, MapTally& tally) {
+  const auto edges = bin_edges(map);
+  const auto written = file.read<std::int64_t>(group + "/bin_edges", {edges.size()});
+  if (!std::equal(edges.begin(), edges.end(), written.begin()))
+    file.refuse(fmt::format("dataset {}/bin_edges", group), "its bins are not those of this program");
+  const h5::Allowed a_cell{
+      .low = 0, .high = static_cast<double>(tally.reached.size()) - 1, .why = "there is no such cell"};
+  const auto cells = file.read_list<std::int32_t>(group + "/histogram_cells", a_cell);
+  const auto bins = file.read<std::int32_t>(group + "/histograms", {cells.size(), histogram_bins}, h5::not_negative);
+  for (std::size_t row = 0; row < cells.size(); ++row)
+    for (int bin = 0; bin < histogram_bins; ++bin)
+      if (const auto count = bins[row * histogram_bins + static_cast<std::size_t>(bin)]; count > 0)
+        tally.histograms.add(static_cast<std::size_t>(cells[row]), bin, static_cast<std::uint32_t>(count));
+}
+
+/// Refuses counts of a cell that contradict one another.
+void check_tally(const h5::File& file, const std::string& group, const MapTally& tally) {
+  for (std::size_t cell = 0; cell < tally.reached.size(); ++cell) {
+    if (tally.tallied == Tallied::distribution) {
+      std::uint64_t binned = 0;
+      for (const std::uint32_t count : tally.histograms.of(cell)) binned += count;
+      if (binned != tally.reached[cell])
+        file.refuse(fmt::format("{}: {} members reached cell {}, and its histogram holds {}", group,
+                                tally.reached[cell], cell, binned),
+                    "they are the same members");
+    }
+    if ((tally.reached[cell] > 0) != (tally.extreme[cell] >= 0))
+      file.refuse(fmt::format("{}: {} members reached cell {}, and its largest value is {}", group, tally.reached[cell],
+                              cell, tally.extreme[cell]),
+                  "a cell that was reached has one, and no other");
+    for (const std::vector<std::uint32_t>& exceeded : tally.exceeded)
+      if (exceeded[cell] > tally.reached[cell])
+        file.refuse(fmt::format("{}: {} members reached cell {}, and {} pass a threshold", group, tally.reached[cell],
+                                cell, exceeded[cell]),
+                    "who passes it is there");
+  }
 }
 
 }  // namespace
@@ -51,13 +171,6 @@ std::span<const std::uint32_t> CellHistograms::of(std::size_t cell) const {
   return std::span(counts_).subspan(static_cast<std::size_t>(row_of_[cell]) * histogram_bins, histogram_bins);
 }
 
-std::vector<std::int32_t> CellHistograms::cells() const {
-  std::vector<std::int32_t> cells;
-  for (std::size_t cell = 0; cell < row_of_.size(); ++cell)
-    if (row_of_[cell] >= 0) cells.push_back(static_cast<std::int32_t>(cell));
-  return cells;
-}
-
 MapTally::MapTally(std::vector<double> of_thresholds, std::size_t cells, Tallied what)
     : thresholds(std::move(of_thresholds)), tallied(what), exceeded(thresholds.size()) {
   grow(cells);
@@ -86,12 +199,6 @@ void MapTally::add(const CountedMap& map, const BinEdges& edges, std::size_t cel
   histograms.add(cell, static_cast<int>(std::upper_bound(edges.begin(), edges.end(), quanta) - edges.begin()));
 }
 
-void MapTally::add(const CountedMap& map, std::span<const double> values) {
-  if (values.size() != reached.size()) throw std::logic_error("MapTally: a map of another grid");
-  const BinEdges edges = bin_edges(map);
-  for (std::size_t cell = 0; cell < values.size(); ++cell) add(map, edges, cell, values[cell]);
-}
-
 void MapTally::add(const CountedMap& map, const MapTally& other, std::span<const std::size_t> places) {
   if (other.thresholds != thresholds || other.tallied != tallied || places.size() != other.reached.size())
     throw std::logic_error("MapTally: counts of another grid or of other thresholds");
@@ -108,14 +215,6 @@ void MapTally::add(const CountedMap& map, const MapTally& other, std::span<const
     for (std::size_t bin = 0; bin < counts.size(); ++bin)
       if (counts[bin] > 0) histograms.add(cell, static_cast<int>(bin), counts[bin]);
   }
-}
-
-void MapTally::add(const CountedMap& map, const MapTally& other) {
-  if (other.reached.size() != reached.size())
-    throw std::logic_error("MapTally: counts of another grid or of other thresholds");
-  std::vector<std::size_t> same(reached.size());
-  std::iota(same.begin(), same.end(), std::size_t{0});
-  add(map, other, same);
 }
 
 double MapTally::largest(const CountedMap& map, std::size_t cell) const {
@@ -153,6 +252,67 @@ double MapTally::quantile(const CountedMap& map, std::size_t cell, double share,
     return map.quantum * (from + (to - from) * wanted / count);
   }
   return map.quantum * static_cast<double>(edges.back()) * map.ratio;
+}
+
+void write_tally(h5::File& file, const CountedMap& map, const MapTally& tally, const std::vector<std::size_t>& order) {
+  const auto group = std::string("/maps/") + map.name;
+  file.make_group(group);
+  file.set_text(group, "unit", map.unit);
+  file.set_number(group, "quantum", map.quantum);
+  file.write_list<double>(group + "/thresholds", tally.thresholds);
+  file.make_group(group + "/exceeded");
+  for (std::size_t n = 0; n < tally.thresholds.size(); ++n)
+    write_sorted<std::int32_t>(file, fmt::format("{}/exceeded/{:03}", group, n), tally.exceeded[n], order);
+  write_sorted<std::int32_t>(file, group + "/reached", tally.reached, order);
+  write_sorted<std::int32_t>(file, group + "/extreme", tally.extreme, order);
+  if (tally.tallied == Tallied::largest) return;
+  write_sorted<std::int64_t>(file, group + "/sum", tally.sum, order);
+  write_sorted<std::int64_t>(file, group + "/sum_of_squares", tally.sum_of_squares, order);
+  write_histograms(file, group, map, tally.histograms, order);
+}
+
+MapTally read_tally(const h5::File& file, const CountedMap& map, const TallyShape& shape) {
+  const auto group = std::string("/maps/") + map.name;
+  const std::size_t cells = shape.cells;
+  MapTally tally(file.read_list<double>(group + "/thresholds"), cells, shape.tallied);
+  h5::check_growing(file, group + "/thresholds", tally.thresholds, true);
+  for (std::size_t n = 0; n < tally.thresholds.size(); ++n)
+    tally.exceeded[n] = read_counted(file, fmt::format("{}/exceeded/{:03}", group, n), cells, shape.members);
+  tally.reached = read_counted(file, group + "/reached", cells, shape.members);
+  tally.extreme = file.read<std::int32_t>(group + "/extreme", {cells}, {.low = -1, .why = "-1 stands for none"});
+  if (tally.tallied == Tallied::distribution) {
+    tally.sum = file.read<std::int64_t>(group + "/sum", {cells}, h5::not_negative);
+    tally.sum_of_squares = file.read<std::int64_t>(group + "/sum_of_squares", {cells}, h5::not_negative);
+    read_histograms(file, group, map, tally);
+  }
+  check_tally(file, group, tally);
+  return tally;
+}
+
+std::vector<std::size_t> write_cells(h5::File& file, const KeptCells& cells) {
+  std::vector<std::int32_t> blocks = cells.blocks();
+  std::sort(blocks.begin(), blocks.end());
+  file.make_group("/cells");
+  file.set_integer("/cells", "block_side", KeptCells::side);
+  file.write_list<std::int32_t>("/cells/blocks", blocks);
+  return cells.in_order();
+}
+
+KeptCells read_cells(const h5::File& file, const MapGrid& grid) {
+  constexpr double most = 1e11;  // cells of a grid: the list of its blocks is 1.6 GB
+  if (static_cast<double>(grid.columns) * grid.rows > most)
+    file.refuse(fmt::format("has a map of {} x {} cells", grid.columns, grid.rows), "no model is so large");
+  KeptCells cells(grid);
+  const h5::Allowed a_block{
+      .low = 0, .high = static_cast<double>(cells.all_blocks()) - 1, .why = "there is no such block"};
+  const auto blocks = file.read_list<std::int32_t>("/cells/blocks", a_block);
+  for (std::size_t n = 0; n < blocks.size(); ++n) {
+    if (n > 0 && blocks[n] <= blocks[n - 1])
+      file.refuse(fmt::format("dataset /cells/blocks holds {} behind {}", blocks[n], blocks[n - 1]),
+                  "blocks stand in their order");
+    cells.keep_block(blocks[n]);
+  }
+  return cells;
 }
 
 }  // namespace talus

@@ -3,8 +3,26 @@
 // ASCII grids (Arc/Info's .asc) in the dialects that GDAL refuses or misreads, put right in memory before it sees them.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
+
+namespace talus {
+
+/// The header of an ASCII grid, whatever its dialect, as it was understood.
+struct AsciiHeader {
+  std::string text;         ///< in the usual form: ncols, nrows, xllcorner, yllcorner, cellsize, NODATA_value
+  std::string nodata;       ///< as given; empty = none
+  std::size_t body_at = 0;  ///< where the cells begin in the file
+  bool usual = true;        ///< GDAL reads the header right as it stands
+};
+
+/// Nullopt when the start of a file names no columns and rows, or no place and cell.
+std::optional<AsciiHeader> ascii_header(std::string_view start_of_file);
+
+}  // namespace talus
 
 namespace talus::gdal {
 
@@ -24,10 +42,8 @@ class AsciiGrid {
   AsciiGrid& operator=(AsciiGrid&&) = delete;
   ~AsciiGrid();
 
-  /// True when the file is an ASCII grid.
-  bool is_one() const { return is_one_; }
-  /// What GDAL opens instead of the file.
-  const std::string& path() const { return path_; }
+  bool is_one() const { return is_one_; }            ///< true when the file is an ASCII grid
+  const std::string& path() const { return path_; }  ///< what GDAL opens instead of the file
 
  private:
   void stand_in(const std::filesystem::path& file, const std::string& header, std::size_t body_at);

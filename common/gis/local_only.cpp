@@ -2,21 +2,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/gis/local_only.hpp"
 
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+
 #include <cpl_http.h>
 #include <cpl_minixml.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <fstream>
-#include <set>
-#include <string_view>
-
 #include "common/gis/gdal_support.hpp"
-#include "common/stage/input_file.hpp"
-#include "common/stage/write_fault.hpp"
+#include "common/recipe/paths.hpp"
+#include "common/stage/files.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
@@ -44,8 +45,7 @@ bool begins_with(std::string_view text, std::string_view beginning) {
   return text.size() >= beginning.size() && EQUALN(text.data(), beginning.data(), beginning.size());
 }
 
-/// True for the name of a place on a network, a database or standard input, also behind a local file system
-/// (/vsizip//vsicurl/...).
+/// True for a place on a network, a database or standard input, also behind a local file system (/vsizip//vsicurl/).
 bool is_remote(std::string_view name) {
   if (name.find("://") != std::string_view::npos) return true;
   const auto begins = [&](std::string_view prefix) { return begins_with(name, prefix); };
@@ -68,12 +68,8 @@ bool is_remote(std::string_view name) {
 bool is_xml(const fs::path& file) {
   std::error_code unknown;
   constexpr std::uintmax_t most = 64 << 20;
-  if (!fs::is_regular_file(file, unknown) || fs::file_size(file, unknown) > most) return false;
-  std::ifstream stream(file, std::ios::binary);
-  std::string start(512, '\0');
-  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  require_read(stream, file);
-  start.resize(static_cast<std::size_t>(stream.gcount()));
+  if (fs::file_size(file, unknown) > most) return false;
+  const std::string start = start_of(file, 512);
   const std::size_t first = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == std::string::npos || start[first] != '<') return false;
   for (const char* name : {"<VRT", "<OGRVRT", "<GDAL", "<WCS", "<OGRWFS", "<GMLAS"})
@@ -90,14 +86,9 @@ class Walk {
     if (is_remote(file.string()) && !network_allowed()) refuse_remote(file, file.string());
     require_plain(file);
     if (!is_xml(file)) return;
-    CPLXMLNode* root = CPLParseXMLFile(file.c_str());
-    try {
-      for (const CPLXMLNode* node = root; node != nullptr; node = node->psNext) look_at(*node, file, depth);
-    } catch (...) {
-      CPLDestroyXMLNode(root);
-      throw;
-    }
-    CPLDestroyXMLNode(root);
+    const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> root(CPLParseXMLFile(file.c_str()),
+                                                                         CPLDestroyXMLNode);
+    for (const CPLXMLNode* node = root.get(); node != nullptr; node = node->psNext) look_at(*node, file, depth);
   }
 
  private:
@@ -185,3 +176,60 @@ void require_local(const fs::path& file) {
 }
 
 }  // namespace talus::gdal
+
+namespace talus {
+namespace fs = std::filesystem;
+namespace {
+
+/// Formats that are read whole when they are opened, and lie in one file but for a projection beside it.
+constexpr std::array<std::string_view, 6> costly{"XYZ", "CSV", "GeoJSON", "KML", "GML", "GPX"};
+
+bool cheap_to_open(const fs::path& file) {
+  GDALDriverH driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR, nullptr, nullptr);
+  return driver != nullptr && std::find(costly.begin(), costly.end(), GDALGetDescription(driver)) == costly.end();
+}
+
+std::vector<fs::path> files_of_dataset(const fs::path& file) {
+  try {
+    gdal::require_local(file);
+  } catch (const DataError&) {
+    return {};  // whoever reads it says so
+  }
+  const gdal::QuietErrors errors;
+  if (!cheap_to_open(file)) return {};
+  const gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  if (!dataset) return {};
+  const CPLStringList names(dataset->GetFileList(), TRUE);
+  return {names.List(), names.List() + names.size()};
+}
+
+/// dem.prj or dem.PRJ beside dem.asc: read with grids and tables that GDAL does not open by itself.
+void add_projection(const fs::path& file, std::vector<fs::path>& files) {
+  for (const char* extension : {".prj", ".PRJ"}) {
+    const fs::path beside = fs::path(file).replace_extension(extension);
+    std::error_code none_there;
+    if (fs::is_regular_file(beside, none_there)) files.push_back(beside);
+  }
+}
+
+/// A name that only GDAL knows (NETCDF:file.nc:z, /vsizip/...) is no file.
+bool is_plain(const fs::path& file) { return file.is_absolute() && !file.native().starts_with("/vsi"); }
+
+}  // namespace
+
+std::vector<fs::path> with_sidecars(const std::vector<fs::path>& files) {
+  std::vector<fs::path> all;
+  const auto add = [&](const fs::path& file) {
+    if (is_plain(file) && std::find(all.begin(), all.end(), file) == all.end()) all.push_back(file);
+  };
+  for (const fs::path& source : files) {
+    const fs::path file = vector_source(source).file;
+    add(file);
+    std::vector<fs::path> parts = files_of_dataset(file);
+    if (is_plain(file)) add_projection(file, parts);
+    for (const fs::path& part : parts) add(part.lexically_normal());
+  }
+  return all;
+}
+
+}  // namespace talus

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What GDAL may open: plain files of this machine, and nothing over a network unless that is asked for.
+// What GDAL may open (plain files of this machine unless more is asked for), and which files it opens for a name.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace talus::gdal {
 
@@ -13,8 +14,16 @@ namespace talus::gdal {
 void close_the_network();
 
 /// Throws DataError where a file, or one that it names (the sources of a VRT, at any depth), is a pipe, a socket or a
-/// device, or where it names a place on a network or a database and --network was not given. Missing files pass:
-/// whoever opens them says so.
+/// device, or where it names a place on a network or a database and --network was not given. Missing files pass.
 void require_local(const std::filesystem::path& file);
 
 }  // namespace talus::gdal
+
+namespace talus {
+
+/// The files, each followed by those that are read with it: projection, world file and statistics beside a raster, the
+/// parts of a shapefile, the sources of a mosaic (VRT), the file behind a name such as NETCDF:file.nc:z. Sidecars are
+/// listed where they are there; a file that is missing or cannot be read is listed alone. Empty paths are left out.
+std::vector<std::filesystem::path> with_sidecars(const std::vector<std::filesystem::path>& files);
+
+}  // namespace talus

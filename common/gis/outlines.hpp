@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outlines of what lies above a threshold, and vector files of them.
+// Outlines: of what lies above a threshold, checked, grown and shrunk, and vector files of them.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,7 @@
 namespace talus {
 
 /// Area above `threshold` (not negative) as polygons with holes, interpolated between cell centres; nodata and what
-/// lies beyond the raster count as 0. The polygons are valid and disjoint: outer ring counter-clockwise, holes
-/// clockwise.
+/// lies beyond the raster count as 0. Valid and disjoint polygons: outer ring counter-clockwise, holes clockwise.
 std::vector<MapPolygon> outline_above(const Raster& raster, double threshold);
 
 /// Several polygons that are one thing, written as one multipolygon.
@@ -25,7 +24,6 @@ struct OutlineFeature {
   std::vector<std::pair<std::string, double>> numbers;  ///< further attributes; keys carry their unit
 };
 
-/// A named layer of outlines.
 struct OutlineLayer {
   std::string name;
   std::vector<OutlineFeature> features;
@@ -36,5 +34,15 @@ struct OutlineLayer {
 /// CRS stays none. Throws DataError when anything fails on the way (disk full, a name twice).
 void write_outlines(const std::filesystem::path& gpkg, const std::string& crs_wkt,
                     const std::vector<OutlineLayer>& layers);
+
+/// The reason with the place why a polygon is not valid (OGC Simple Features): rings that cross or touch themselves,
+/// holes outside or nested, no area. Empty for a valid polygon.
+std::string invalidity_of(const MapPolygon& polygon);
+
+/// Each polygon with all ground within `distance` [m] of it, corners round to a thousandth of the distance; with a
+/// negative one less what lies within it of the edge, so that holes and necks open, and one polygon may become several
+/// or none. Attributes stay. `file` is named in messages. Throws DataError: nothing is left, or GDAL has no GEOS.
+std::vector<MapPolygon> grown(const std::vector<MapPolygon>& polygons, double distance,
+                              const std::filesystem::path& file);
 
 }  // namespace talus

@@ -5,30 +5,28 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/map/raster.hpp"
 
 namespace talus {
 
-/// How a raster is read.
 struct ReadOptions {
   /// WKT of a CRS in metres. A raster in degrees, in feet or in another CRS is reprojected to it as its cells are read
   /// (bilinear; square cells about as large as the file's, on whole multiples of their size). Empty: as the file is,
   /// and degrees and feet are refused. A raster without CRS is never reprojected.
   std::string to_crs;
-  /// What the values are in: "metre", "foot" or "us-survey-foot"; "" = what the file says, metres where it says
-  /// nothing.
+  /// What the values are in: "metre", "foot" or "us-survey-foot"; "" = what the file says, else metres.
   std::string vertical_unit;
   /// Another way out, for the end of a refusal of degrees and feet: "or set working_crs = "utm" in the recipe".
   std::string or_else;
 };
 
 /// Band 1 of any GDAL raster. Scale and offset are applied; nodata (declared, masked, NaN, or the customary -9999 and
-/// the like where none is declared) becomes NaN; declared feet and other lengths become metres. The constructor reads
-/// the header only. Refused with the command that mends it (DataError): missing or unreadable file, degrees or feet
-/// (see ReadOptions), a unit of length that is not known, rotated or non-square cells. Not for use by two threads at
-/// once.
+/// the like where none is declared) becomes NaN; declared feet and other lengths become metres. Reads the header only.
+/// Refused with the command that mends it (DataError): missing or unreadable file, degrees or feet (see ReadOptions), a
+/// unit of length that is not known, rotated or non-square cells. Not for use by two threads at once.
 class RasterFile {
  public:
   explicit RasterFile(const std::filesystem::path& file, const ReadOptions& options = {});
@@ -36,10 +34,8 @@ class RasterFile {
   RasterFile& operator=(RasterFile&&) noexcept;
   ~RasterFile();
 
-  /// The file as it was named.
-  const std::filesystem::path& file() const;
-  /// The grid of its cells, after a reprojection if there is one.
-  const MapGrid& grid() const;
+  const std::filesystem::path& file() const;  ///< the file as it was named
+  const MapGrid& grid() const;                ///< the grid of its cells, after a reprojection if there is one
 
   /// Between one value that the file can hold and the next, where it holds integers [m]; 0 for real numbers.
   double step() const;
@@ -55,5 +51,22 @@ class RasterFile {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// Band 1 of any GDAL raster whole: RasterFile(file).read(). A file without CRS is taken as local metric coordinates;
+/// degrees, feet in the map's plane, and rasters without any value are refused. Throws DataError.
+Raster read_raster(const std::filesystem::path& file);
+
+/// A raster whole: as it is where it is in metres, else reprojected to `crs_wkt`. Throws as read_raster() does.
+Raster read_raster_in_metres(const std::filesystem::path& file, const std::string& crs_wkt);
+
+/// True when a raster's CRS is projected and in metres, or when it names none. Throws DataError as RasterFile does.
+bool in_metres(const std::filesystem::path& file);
+
+/// WKT2 of the UTM zone (on WGS 84) that holds the centre of a raster. Throws DataError: no CRS, or beyond 84 degrees.
+std::string utm_crs_of(const std::filesystem::path& file);
+
+/// A number among the metadata items of a raster file (as RasterTags writes them); empty where the item is missing or
+/// no number. Throws DataError when the file cannot be opened.
+std::optional<double> raster_item(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace talus

@@ -29,13 +29,10 @@ class RasterSource {
   /// Opens the file and reads its header. `vertical_unit` as in ReadOptions.
   RasterSource(std::filesystem::path file, const std::string& vertical_unit);
 
-  /// The file as it was named.
-  const std::filesystem::path& file() const { return file_; }
-  /// Number of columns.
-  int columns() const;
-  /// Number of lines.
-  int lines() const;
-  bool placed() const { return placed_; }  ///< has a georeference
+  const std::filesystem::path& file() const { return file_; }  ///< the file as it was named
+  int columns() const;                                         ///< number of columns
+  int lines() const;                                           ///< number of lines
+  bool placed() const { return placed_; }                      ///< has a georeference
   /// Coordinates in the CRS of the file by column and line.
   const GeoTransform& transform() const { return transform_; }
   const OGRSpatialReference* srs() const;  ///< null when the file names none
@@ -75,8 +72,7 @@ class Warped {
   Warped& operator=(const Warped&) = delete;
   ~Warped();
 
-  /// The grid that cells are reprojected to.
-  const MapGrid& grid() const { return grid_; }
+  const MapGrid& grid() const { return grid_; }  ///< the grid that cells are reprojected to
   /// Cells, northernmost line first. Throws DataError as RasterSource::read does.
   std::vector<double> read(int column, int line, int columns, int lines);
 

@@ -4,18 +4,41 @@
 // Thickness by exact area weights: what is a volume stays a volume.
 #include "common/gis/resampling.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include <fmt/format.h>
+
+#include "common/error.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/gdal_support.hpp"
-#include "common/map/bilinear.hpp"
-#include "common/map/biquintic.hpp"
-#include "common/map/crop.hpp"
+#include "common/stage/machine.hpp"
 
 namespace talus {
+
+void require_told_apart(const MapGrid& grid, const std::string& what) {
+  constexpr double enough = 1e-3;  // of a cell
+  const double farthest =
+      std::max({std::abs(grid.west), std::abs(grid.east()), std::abs(grid.south), std::abs(grid.north())});
+  const double apart = std::nextafter(farthest, std::numeric_limits<double>::infinity()) - farthest;
+  if (apart <= enough * grid.cell) return;  // false where something is not finite
+  throw DataError(
+      {fmt::format("{}: west {:g}, south {:g}, cells of {:g} m", what, grid.west, grid.south, grid.cell),
+       fmt::format("coordinates that large are {:.2g} m apart in double precision, so that its cells cannot "
+                   "be told from one another",
+                   apart),
+       "Check its corner and its cell size; move it to where its CRS is valid"});
+}
+
+void require_room(double columns, double rows, double bytes_per_cell, const std::string& what,
+                  const std::string& mend) {
+  const std::string size = fmt::format("{}: {:.0f} x {:.0f} cells", what, columns, rows);
+  constexpr double most = std::numeric_limits<int>::max();
+  if (!(columns <= most) || !(rows <= most)) throw DataError({size, "columns and rows are counted in 32 bits", mend});
+  require_memory(columns * rows * bytes_per_cell, size, mend);
+}
+
 namespace {
 
 /// The cells of a grid along one of its axes.
@@ -55,10 +78,9 @@ Raster by_overlaps(const MapGrid& source, const MapGrid& grid, const Value& valu
   const auto in_x = axis_overlaps({source.west, source.cell, source.columns}, {grid.west, grid.cell, grid.columns});
   const auto in_y = axis_overlaps({source.south, source.cell, source.rows}, {grid.south, grid.cell, grid.rows});
   Raster result{grid, std::vector<double>(grid.count())};
-  for (int row = 0; row < grid.rows; ++row) {
+  for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
       result.at(column, row) = value(in_x[static_cast<std::size_t>(column)], in_y[static_cast<std::size_t>(row)]);
-  }
   return result;
 }
 
@@ -79,15 +101,14 @@ double covered(const std::vector<Overlap>& overlaps) {
   return length;
 }
 
-/// Mean over n x n interpolated samples a cell, the samples carried into the source's CRS row by row. `transform` may
-/// be null.
+/// Mean over n x n interpolated samples a cell, carried into the source's CRS row by row where `transform` is not null.
 Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransformation* transform, int n,
                Interpolation interpolation) {
   const auto at = interpolation == Interpolation::quintic ? biquintic : bilinear;
   Raster result{grid, std::vector<double>(grid.count(), 0)};
   const auto samples = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(n);
   std::vector<double> x(samples), y(samples);
-  for (int row = 0; row < grid.rows; ++row) {
+  for (int row = 0; row < grid.rows; ++row)
     for (int sub = 0; sub < n; ++sub) {
       for (std::size_t k = 0; k < samples; ++k) {
         x[k] = grid.west + (static_cast<double>(k) + 0.5) * grid.cell / n;
@@ -98,7 +119,6 @@ Raster sampled(const Raster& source, const MapGrid& grid, OGRCoordinateTransform
       for (std::size_t k = 0; k < samples; ++k)
         result.at(static_cast<int>(k) / n, row) += at(source, x[k], y[k]) / (n * n);
     }
-  }
   return result;
 }
 

@@ -16,8 +16,6 @@ double to_srgb(double linear) {
   return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
 }
 
-double to_linear(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
-
 /// OKLab (B. Ottosson 2020, "A perceptual color space for image processing") from lightness, chroma and hue [deg].
 Colour from_oklch(double lightness, double chroma, double hue) {
   const double a = chroma * std::cos(hue * std::numbers::pi / 180), b = chroma * std::sin(hue * std::numbers::pi / 180);
@@ -55,14 +53,6 @@ Colour difference_colour(bool gain, std::size_t index, std::size_t count) {
 std::string class_label(std::size_t index, const std::vector<double>& limits) {
   if (index + 1 == limits.size()) return fmt::format("> {:g}", limits[index]);
   return fmt::format("{:g} \u2013 {:g}", limits[index], limits[index + 1]);
-}
-
-double oklab_lightness(const Colour& colour) {
-  const double r = to_linear(colour.r), g = to_linear(colour.g), b = to_linear(colour.b);
-  const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
-  const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
-  const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
-  return 0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s;
 }
 
 std::string hex(const Colour& colour) {

@@ -29,9 +29,6 @@ Colour difference_colour(bool gain, std::size_t index, std::size_t count);
 /// "5 - 10" with an en dash, "> 100" for the last.
 std::string class_label(std::size_t index, const std::vector<double>& limits);
 
-/// Lightness of a colour in OKLab, 0 black to 1 white.
-double oklab_lightness(const Colour& colour);
-
 /// "#rrggbb".
 std::string hex(const Colour& colour);
 

@@ -3,13 +3,22 @@
 #include "common/map/statistics.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace talus {
+
+std::string grouped(double value) { return grouped(fmt::format("{:.0f}", value), ","); }
+
+std::string grouped(std::string number, const char* between) {
+  const std::size_t start = number.starts_with('-') ? 1 : 0;
+  for (std::size_t i = std::min(number.find('.'), number.size()); i > start + 3;) number.insert(i -= 3, between);
+  return number;
+}
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();

@@ -1,16 +1,36 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Medians and quantiles.
+// Medians and quantiles, sums that keep their digits, and numbers as people write them.
 #pragma once
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "common/map/raster.hpp"
 
 namespace talus {
 
-/// The value below which the share `q` (0 to 1) of the values lies, linear between the sorted values (Hyndman and Fan
-/// 1996, type 7). NaN where there is none.
+/// Neumaier's compensated sum (1974): the error does not grow with the count.
+class Sum {
+ public:
+  void add(double value) {
+    const double total = sum_ + value;
+    rest_ += std::abs(sum_) >= std::abs(value) ? (sum_ - total) + value : (value - total) + sum_;
+    sum_ = total;
+  }
+  double value() const { return sum_ + rest_; }  ///< the sum of all values added
+
+ private:
+  double sum_ = 0, rest_ = 0;
+};
+
+/// Rounded to a whole number, in groups of three: "36,003,420".
+std::string grouped(double value);
+/// A written number with `between` between its groups.
+std::string grouped(std::string number, const char* between);
+
+/// The value below which a share `q` of the values lies, linear between them (Hyndman and Fan 1996, type 7); NaN: none.
 double quantile(std::vector<double> values, double q);
 
 /// The value below which 99 % of the values above 0 lie, as quantile() has it: what a map holds where there is

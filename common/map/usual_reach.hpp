@@ -15,12 +15,10 @@ struct ReachRegression {
   double offset, slope;  ///< [-]
   double from_volume;    ///< below this it is not taken [m3]
 
-  /// H/L of a volume [-].
-  double tangent(double volume) const;
+  double tangent(double volume) const;  ///< H/L of a volume [-]
 };
 
-/// Scheidegger (1973), large rock slides, here from 1e5 m3 on; Corominas (1996), all of his 204 landslides, here from
-/// 1e4 m3 on.
+/// Scheidegger (1973), large rock slides, here from 1e5 m3 on; Corominas (1996), all 204 landslides, here from 1e4 m3.
 std::span<const ReachRegression> reach_regressions();
 
 /// The bounds that landslides of a volume hardly ever leave [-]: half of the smallest to twice the largest H/L of the

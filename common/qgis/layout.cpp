@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/qgis/layout.hpp"
+#include "common/qgis/project.hpp"
 
 #include <fmt/format.h>
 
@@ -153,10 +153,9 @@ void add_legend(XmlElement layout, const std::vector<LegendEntry>& entries) {
     item.set(key, value);
   XmlElement styles = item.add("styles");
   for (const auto& [name, points, above] :
-       {std::tuple{"title", 10, "0"}, {"group", 9, "3"}, {"subgroup", 9, "3"}, {"symbol", 8, "0.8"}}) {
+       {std::tuple{"title", 10, "0"}, {"group", 9, "3"}, {"subgroup", 9, "3"}, {"symbol", 8, "0.8"}})
     styles.add("style", {{"name", name}, {"alignment", "1"}, {"indent", "0"}, {"marginTop", above}})
         .add("styleFont", {{"description", font({static_cast<double>(points), points > 8})}, {"style", ""}});
-  }
   styles
       .add("style",
            {{"name", "symbolLabel"}, {"alignment", "1"}, {"indent", "0"}, {"marginTop", "0.8"}, {"marginLeft", "2"}})
@@ -240,9 +239,8 @@ std::string in_lines(const std::string& name, std::size_t most) {
 
 double scale_bar_segment(double width) {
   const double most = width / 8, power = std::pow(10, std::floor(std::log10(most)));
-  for (const double step : {5.0, 2.0}) {
+  for (const double step : {5.0, 2.0})
     if (step * power <= most) return step * power;
-  }
   return power;
 }
 

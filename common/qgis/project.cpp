@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "common/gis/gdal_support.hpp"
-#include "common/qgis/renderer.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -36,8 +35,7 @@ bool is_raster(const ProjectLayer& layer) { return !std::holds_alternative<Outli
 const char* provider(const ProjectLayer& layer) { return is_raster(layer) ? "gdal" : "ogr"; }
 const char* checked(bool shown) { return shown ? "Qt::Checked" : "Qt::Unchecked"; }
 
-/// The same in every run, so that a project compares equal to one made before. QGIS takes no id of ten letters or
-/// fewer.
+/// The same in every run, so that projects compare equal. QGIS takes no id of ten letters or fewer.
 std::string id_of(std::size_t group, std::size_t layer) { return fmt::format("talus_layer_{:02}_{:02}", group, layer); }
 
 /// As projects hold it: "./a.tif"; of a subdataset the file in it, as QGIS looks for it.
@@ -114,13 +112,12 @@ void add_canvas(XmlElement root, const QgisProject& project) {
 /// From when to when, and how fast, the Temporal Controller goes through the layers that have a time: one by one.
 void add_times(XmlElement root, const QgisProject& project) {
   std::string begin, end;
-  for (const ProjectGroup& group : project.groups) {
+  for (const ProjectGroup& group : project.groups)
     for (const ProjectLayer& layer : group.layers) {
       if (!layer.time) continue;
       if (begin.empty() || layer.time->begin < begin) begin = layer.time->begin;
       if (layer.time->end > end) end = layer.time->end;
     }
-  }
   if (begin.empty()) return;
   XmlElement range =
       root.add("ProjectTimeSettings",
@@ -166,10 +163,9 @@ void write_qgis_project(const std::filesystem::path& file, const QgisProject& pr
   add_tree(root, project);
   add_canvas(root, project);
   XmlElement layers = root.add("projectlayers");
-  for (std::size_t g = 0; g < project.groups.size(); ++g) {
+  for (std::size_t g = 0; g < project.groups.size(); ++g)
     for (std::size_t i = 0; i < project.groups[g].layers.size(); ++i)
       add_layer(layers, project.groups[g].layers[i], id_of(g, i), crs);
-  }
   add_properties(root, !crs.empty());
   add_times(root, project);
   if (project.layout) add_print_layout(root.add("Layouts"), *project.layout, project.view, shown_layers(project));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/recipe/overrides.hpp"
+#include "common/recipe/recipe.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "common/recipe/parsed.hpp"
-#include "common/recipe/values.hpp"
 
 namespace talus::recipe {
 namespace {
@@ -154,7 +153,8 @@ void apply(toml::table& root, const std::string& override, const std::string& sh
 
 }  // namespace
 
-void apply_overrides(toml::table& root, const std::vector<std::string>& overrides, std::vector<Fault>& faults) {
+void apply_overrides(toml::table& root, const std::vector<std::string>& overrides) {
+  std::vector<Fault> faults;
   for (const std::string& override : overrides) {
     const std::string shown = std::string(set_mark) + override;
     try {
@@ -163,6 +163,7 @@ void apply_overrides(toml::table& root, const std::vector<std::string>& override
       faults.push_back({shown, unusable.why, unusable.mend});
     }
   }
+  if (!faults.empty()) throw RecipeError(std::move(faults));
 }
 
 }  // namespace talus::recipe

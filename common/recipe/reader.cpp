@@ -1,22 +1,45 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The visitor that fills options from a parsed table and notes every fault on the way.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
 
-#include "common/recipe/shown_paths.hpp"
+#include <fmt/format.h>
+
+#include "common/recipe/parsed.hpp"
+#include "common/recipe/paths.hpp"
+#include "common/recipe/recipe.hpp"
 #include "common/recipe/suggest.hpp"
-#include "common/recipe/values.hpp"
-#include "common/recipe/vector_source.hpp"
-#include "common/recipe/walk.hpp"
 
 namespace talus::recipe {
 namespace fs = std::filesystem;
 namespace {
+
+/// "${NAME}" by the environment; names that are unset go into `unset`.
+std::string expand(const std::string& text, std::vector<std::string>& unset) {
+  std::string result;
+  std::size_t at = 0;
+  for (std::size_t open; (open = text.find("${", at)) != std::string::npos;) {
+    const std::size_t close = text.find('}', open);
+    if (close == std::string::npos) break;
+    const std::string name = text.substr(open + 2, close - open - 2);
+    const char* found = std::getenv(name.c_str());
+    if (found == nullptr) unset.push_back(name);
+    result += text.substr(at, open - at) + (found == nullptr ? "" : found);
+    at = close + 1;
+  }
+  return result + text.substr(at);
+}
+
+/// GDAL's names of things inside files (NETCDF:file.nc:z) are no paths.
+bool names_a_dataset(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  return colon != std::string::npos && colon > 1 &&
+         std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
+                     [](unsigned char c) { return std::isupper(c) || std::isdigit(c) || c == '_'; });
+}
 
 class Reader : public Visitor {
  public:
@@ -49,7 +72,28 @@ class Reader : public Visitor {
   void text(std::string_view key, std::string& value, std::string_view) override {
     if (const auto* node = walk_.find(key)) read_plain(*node, key, value, "text in quotes");
   }
-  void path(std::string_view key, fs::path& value, std::string_view) override;
+  void path(std::string_view key, fs::path& value, std::string_view) override {
+    const auto* node = walk_.find(key);
+    std::string text = value.string();
+    if (node != nullptr && !read_plain(*node, key, text, "a path in quotes")) return;
+    VectorSource source = vector_source(text);
+    const std::string given = source.file.string();
+    std::vector<std::string> unset;
+    const std::string expanded = expand(given, unset);
+    for (const auto& name : unset) {
+      if (node == nullptr) break;
+      walk_.add(*node, key, fmt::format("the environment variable {} is not set", name),
+                fmt::format("Set it: export {}=...", name));
+    }
+    if (!unset.empty()) return;
+    const bool as_it_is = expanded.empty() || names_a_dataset(expanded);
+    source.file = as_it_is ? fs::path(expanded) : (folder_ / expanded).lexically_normal();
+    value = source.text();
+    if (as_it_is || fs::path(given).is_absolute()) return;
+    const bool by_environment = given != expanded;
+    const fs::path from_here = fs::path(shown_).parent_path() / given;
+    show_path_as(source.file, by_environment ? given : from_here.lexically_normal().string(), given);
+  }
   void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view) override {
     read_list(key, value, [&](const toml::node& node, const std::string& name, double& item) {
       return read_number(node, name, item, range, true);
@@ -63,15 +107,19 @@ class Reader : public Visitor {
   void pairs(std::string_view key, Pairs& value, Range range, std::string_view) override {
     read_list(key, value, [&](const toml::node& node, const std::string& name, std::array<double, 2>& row) {
       const auto* pair = node.as_array();
-      if (pair == nullptr || pair->size() != 2) {
-        walk_.add(node, name, "a row of two numbers is wanted", fmt::format("Write {} = [[a, b], ...]", key));
-        return false;
-      }
+      if (pair == nullptr || pair->size() != 2)
+        return walk_.add(node, name, "a row of two numbers is wanted", fmt::format("Write {} = [[a, b], ...]", key));
       return read_number(*pair->get(0), name + "[0]", row[0], range, true) &&
              read_number(*pair->get(1), name + "[1]", row[1], range, true);
     });
   }
-  void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view) override;
+  void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view) override {
+    const auto* node = walk_.find(key);
+    std::string word;
+    if (node == nullptr || !read_plain(*node, key, word, names_text(names).c_str())) return;
+    if (is_one_of(*node, key, word, names))
+      index = static_cast<int>(std::find(names.begin(), names.end(), word) - names.begin());
+  }
   void names(std::string_view key, std::vector<std::string>& value, const std::vector<std::string_view>& allowed,
              std::string_view) override {
     read_list(key, value, [&](const toml::node& node, const std::string& name, std::string& item) {
@@ -93,145 +141,81 @@ class Reader : public Visitor {
       value = *exact;
       return true;
     }
-    walk_.add(node, key, fmt::format("it is {}", kind_of(node)), fmt::format("Give {}", wanted));
-    return false;
+    return walk_.add(node, key, fmt::format("it is {}", kind_of(node)), fmt::format("Give {}", wanted));
   }
 
   bool is_one_of(const toml::node& node, std::string_view key, const std::string& word,
-                 const std::vector<std::string_view>& names);
-  bool in_range(const toml::node& node, std::string_view key, double value, const Range& range) {
-    if (inside(range, value)) return true;
-    walk_.add(node, key, "out of range", "It must be " + range_text(range));
-    return false;
+                 const std::vector<std::string_view>& names) {
+    if (std::find(names.begin(), names.end(), word) != names.end()) return true;
+    if (const std::string_view advice = walk_.advice_on_word(key.substr(0, key.find('[')), word); !advice.empty())
+      return walk_.add(node, key, "no longer a choice", std::string(advice));
+    const std::string near = nearest(word, {names.begin(), names.end()});
+    return walk_.add(
+        node, key, "no such choice",
+        (near.empty() ? "" : fmt::format("Did you mean \"{}\"? ", near)) + "It must be " + names_text(names));
   }
 
-  bool read_number(const toml::node& node, std::string_view key, double& value, const Range& range, bool finite);
-  bool read_integer(const toml::node& node, std::string_view key, int& value, const Range& range);
+  bool in_range(const toml::node& node, std::string_view key, double value, const Range& range) {
+    return inside(range, value) || walk_.add(node, key, "out of range", "It must be " + range_text(range));
+  }
+
+  bool read_number(const toml::node& node, std::string_view key, double& value, const Range& range, bool finite) {
+    if (!node.is_number()) return walk_.add(node, key, fmt::format("it is {}", kind_of(node)), "Give a number");
+    const double read =
+        node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+    if (std::isnan(read) || (finite && !std::isfinite(read)))
+      return walk_.add(node, key, "it is not a finite number",
+                       "Give a number" + (range_text(range).empty() ? "" : " " + range_text(range)));
+    if (!in_range(node, key, read, range)) return false;
+    value = read;
+    return true;
+  }
+
+  bool read_integer(const toml::node& node, std::string_view key, int& value, const Range& range) {
+    const auto* integer = node.as_integer();
+    if (integer == nullptr)
+      return walk_.add(node, key, fmt::format("it is {}", kind_of(node)), "Give an integer, without a decimal point");
+    const auto read = integer->get();
+    if (!in_range(node, key, static_cast<double>(read), range)) return false;
+    if (read != static_cast<int>(read))
+      return walk_.add(
+          node, key, "out of range",
+          fmt::format("It must be {} to {}", std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+    value = static_cast<int>(read);
+    return true;
+  }
+
   template <class T, class ReadItem>
-  void read_list(std::string_view key, std::vector<T>& value, ReadItem&& read_item);
+  void read_list(std::string_view key, std::vector<T>& value, ReadItem&& read_item) {
+    const auto* node = walk_.find(key);
+    if (node == nullptr) return;
+    const auto* array = node->as_array();
+    if (array == nullptr) {
+      walk_.add(*node, key, "a list is wanted", fmt::format("Write {} = [...]", key));
+      return;
+    }
+    std::vector<T> read(array->size());
+    bool good = true;
+    for (std::size_t i = 0; i < read.size(); ++i)
+      good = read_item(*array->get(i), fmt::format("{}[{}]", key, i), read[i]) && good;
+    if (good) value = std::move(read);
+  }
 
   Walk walk_;
   fs::path folder_;
   std::string shown_;  // the recipe as the user wrote it
 };
 
-bool Reader::read_number(const toml::node& node, std::string_view key, double& value, const Range& range, bool finite) {
-  if (!node.is_number()) {
-    walk_.add(node, key, fmt::format("it is {}", kind_of(node)), "Give a number");
-    return false;
+class Checker : public Visitor {
+ public:
+  explicit Checker(std::vector<Fault>& faults) : faults_(faults) {}
+  void needs(bool met, const Fault& otherwise) override {
+    if (!met) faults_.push_back(otherwise);
   }
-  const double read =
-      node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-  if (std::isnan(read) || (finite && !std::isfinite(read))) {
-    walk_.add(node, key, "it is not a finite number",
-              "Give a number" + (range_text(range).empty() ? "" : " " + range_text(range)));
-    return false;
-  }
-  if (!in_range(node, key, read, range)) return false;
-  value = read;
-  return true;
-}
 
-bool Reader::read_integer(const toml::node& node, std::string_view key, int& value, const Range& range) {
-  const auto* integer = node.as_integer();
-  if (integer == nullptr) {
-    walk_.add(node, key, fmt::format("it is {}", kind_of(node)), "Give an integer, without a decimal point");
-    return false;
-  }
-  const auto read = integer->get();
-  if (!in_range(node, key, static_cast<double>(read), range)) return false;
-  if (read != static_cast<int>(read)) {
-    walk_.add(node, key, "out of range",
-              fmt::format("It must be {} to {}", std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
-    return false;
-  }
-  value = static_cast<int>(read);
-  return true;
-}
-
-template <class T, class ReadItem>
-void Reader::read_list(std::string_view key, std::vector<T>& value, ReadItem&& read_item) {
-  const auto* node = walk_.find(key);
-  if (node == nullptr) return;
-  const auto* array = node->as_array();
-  if (array == nullptr) {
-    walk_.add(*node, key, "a list is wanted", fmt::format("Write {} = [...]", key));
-    return;
-  }
-  std::vector<T> read(array->size());
-  bool good = true;
-  for (std::size_t i = 0; i < read.size(); ++i)
-    good = read_item(*array->get(i), fmt::format("{}[{}]", key, i), read[i]) && good;
-  if (good) value = std::move(read);
-}
-
-/// "${NAME}" by the environment; names that are unset go into `unset`.
-std::string expand(const std::string& text, std::vector<std::string>& unset) {
-  std::string result;
-  std::size_t at = 0;
-  for (std::size_t open; (open = text.find("${", at)) != std::string::npos;) {
-    const std::size_t close = text.find('}', open);
-    if (close == std::string::npos) break;
-    const std::string name = text.substr(open + 2, close - open - 2);
-    const char* found = std::getenv(name.c_str());
-    if (found == nullptr) unset.push_back(name);
-    result += text.substr(at, open - at) + (found == nullptr ? "" : found);
-    at = close + 1;
-  }
-  return result + text.substr(at);
-}
-
-/// GDAL's names of things inside files (NETCDF:file.nc:z) are no paths.
-bool names_a_dataset(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  return colon != std::string::npos && colon > 1 &&
-         std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
-                     [](unsigned char c) { return std::isupper(c) || std::isdigit(c) || c == '_'; });
-}
-
-void Reader::path(std::string_view key, fs::path& value, std::string_view) {
-  const auto* node = walk_.find(key);
-  std::string text = value.string();
-  if (node != nullptr && !read_plain(*node, key, text, "a path in quotes")) return;
-  VectorSource source = vector_source(text);
-  const std::string given = source.file.string();
-  std::vector<std::string> unset;
-  const std::string expanded = expand(given, unset);
-  for (const auto& name : unset) {
-    if (node == nullptr) break;
-    walk_.add(*node, key, fmt::format("the environment variable {} is not set", name),
-              fmt::format("Set it: export {}=...", name));
-  }
-  if (!unset.empty()) return;
-  const bool as_it_is = expanded.empty() || names_a_dataset(expanded);
-  source.file = as_it_is ? fs::path(expanded) : (folder_ / expanded).lexically_normal();
-  value = source.text();
-  if (as_it_is || fs::path(given).is_absolute()) return;
-  const bool by_environment = given != expanded;
-  const fs::path from_here = fs::path(shown_).parent_path() / given;
-  show_path_as(source.file, by_environment ? given : from_here.lexically_normal().string(), given);
-}
-
-bool Reader::is_one_of(const toml::node& node, std::string_view key, const std::string& word,
-                       const std::vector<std::string_view>& names) {
-  if (std::find(names.begin(), names.end(), word) != names.end()) return true;
-  if (const std::string_view advice = walk_.advice_on_word(key.substr(0, key.find('[')), word); !advice.empty()) {
-    walk_.add(node, key, "no longer a choice", std::string(advice));
-    return false;
-  }
-  const std::string near = nearest(word, {names.begin(), names.end()});
-  walk_.add(node, key, "no such choice",
-            (near.empty() ? "" : fmt::format("Did you mean \"{}\"? ", near)) + "It must be " + names_text(names));
-  return false;
-}
-
-void Reader::one_of(std::string_view key, int& index, const std::vector<std::string_view>& names, std::string_view) {
-  const auto* node = walk_.find(key);
-  std::string word;
-  if (node == nullptr || !read_plain(*node, key, word, names_text(names).c_str())) return;
-  if (is_one_of(*node, key, word, names))
-    index = static_cast<int>(std::find(names.begin(), names.end(), word) - names.begin());
-}
+ private:
+  std::vector<Fault>& faults_;
+};
 
 }  // namespace
 
@@ -239,5 +223,7 @@ std::unique_ptr<Visitor> make_table_reader(const toml::table& root, std::string 
                                            std::string_view stage, std::vector<Fault>& faults) {
   return std::make_unique<Reader>(root, std::move(shown), std::move(folder), stage, faults);
 }
+
+std::unique_ptr<Visitor> make_checker(std::vector<Fault>& faults) { return std::make_unique<Checker>(faults); }
 
 }  // namespace talus::recipe

@@ -2,20 +2,65 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/recipe/recipe.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
-#include "common/recipe/gone_keys.hpp"
-#include "common/recipe/overrides.hpp"
+#include <fmt/format.h>
+
 #include "common/recipe/parsed.hpp"
-#include "common/recipe/shown_paths.hpp"
+#include "common/recipe/paths.hpp"
 #include "common/recipe/suggest.hpp"
 #include "common/whole_text.hpp"
 
 namespace talus::recipe {
 namespace fs = std::filesystem;
+
+std::string toml_number(double value) {
+  std::string text = fmt::format("{}", value);
+  if (std::isfinite(value) && text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string toml_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f)
+      result += fmt::format("\\u{:04x}", code);
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+std::string range_text(const Range& range) {
+  const bool low = std::isfinite(range.low);
+  const bool high = std::isfinite(range.high);
+  if (low && high && !range.open_low && !range.open_high) return fmt::format("{} to {}", range.low, range.high);
+  std::string text;
+  if (low) text += fmt::format("{} {}", range.open_low ? ">" : ">=", range.low);
+  if (low && high) text += " and ";
+  if (high) text += fmt::format("{} {}", range.open_high ? "<" : "<=", range.high);
+  return text;
+}
+
+bool inside(const Range& range, double value) {
+  const bool above = range.open_low ? value > range.low : value >= range.low;
+  const bool below = range.open_high ? value < range.high : value <= range.high;
+  return above && below;
+}
+
+std::string names_text(const std::vector<std::string_view>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+    text += fmt::format("\"{}\"", names[i]);
+  }
+  return text;
+}
+
 namespace {
 
 std::string contents_of(const fs::path& file) {
@@ -52,6 +97,48 @@ bool fit_for_a_file_name(const std::string& name) {
                      [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
 }
 
+void append(const toml::node& node, std::string& text);
+
+void append(const toml::table& table, std::string& text) {
+  text += '{';
+  for (const auto& [key, value] : table) {  // by name, whatever the order in the file
+    text += toml_text(key.str()) + ":";
+    append(value, text);
+    text += ',';
+  }
+  text += '}';
+}
+
+void append(const toml::array& array, std::string& text) {
+  text += '[';
+  for (const toml::node& item : array) {
+    append(item, text);
+    text += ',';
+  }
+  text += ']';
+}
+
+/// 5 and 5.0 are the same number.
+void append(const toml::node& node, std::string& text) {
+  if (const auto* table = node.as_table()) {
+    append(*table, text);
+  } else if (const auto* array = node.as_array()) {
+    append(*array, text);
+  } else if (const auto* word = node.as_string()) {
+    text += toml_text(word->get());
+  } else if (const auto* flag = node.as_boolean()) {
+    text += flag->get() ? "true" : "false";
+  } else if (const auto* count = node.as_integer()) {
+    text += toml_number(static_cast<double>(count->get()));
+  } else if (const auto* number = node.as_floating_point()) {
+    text += toml_number(number->get());
+  } else {
+    std::ostringstream stream;
+    node.visit([&](const auto& value) { stream << value; });
+    text += stream.str();
+  }
+}
+
 }  // namespace
 
 std::string place(const std::string& file, const toml::source_region& source) {
@@ -64,9 +151,7 @@ std::unique_ptr<Recipe::Parsed> Recipe::parsed(std::string_view text, const fs::
   auto parsed = std::make_unique<Parsed>();
   parsed->root = toml_of(text, shown);
   parsed->overrides = overrides;
-  std::vector<Fault> faults;
-  apply_overrides(parsed->root, overrides, faults);
-  if (!faults.empty()) throw RecipeError(std::move(faults));
+  apply_overrides(parsed->root, overrides);
   parsed->file = fs::absolute(file).lexically_normal();
   parsed->shown = std::move(shown);
   return parsed;
@@ -88,9 +173,7 @@ Recipe::~Recipe() = default;
 
 Recipe Recipe::with(const std::vector<std::string>& values) const {
   auto changed = std::make_unique<Parsed>(*parsed_);
-  std::vector<Fault> faults;
-  apply_overrides(changed->root, values, faults);
-  if (!faults.empty()) throw RecipeError(std::move(faults));
+  apply_overrides(changed->root, values);
   return Recipe(std::move(changed));
 }
 
@@ -133,6 +216,14 @@ std::unique_ptr<Visitor> Recipe::make_reader(std::string_view stage, std::vector
                       "it becomes part of file names",
                       "Use letters, digits, '-', '_' and '.' only; put the rest into title"});
   return make_table_reader(parsed_->root, parsed_->shown, folder, stage, faults);
+}
+
+std::optional<std::string> Recipe::canonical(std::string_view table) const {
+  const toml::table* found = parsed_->root[table].as_table();
+  if (found == nullptr) return std::nullopt;
+  std::string text;
+  append(*found, text);
+  return text;
 }
 
 }  // namespace talus::recipe

@@ -38,42 +38,43 @@ inline constexpr Range fraction{0.0, 1.0};
 /// Rows of two numbers, [[a, b], ...].
 using Pairs = std::vector<std::array<double, 2>>;
 
-/// Walks the keys of a stage's options. A default is the value the member holds before the visit.
-/// Keys carry their unit (density_kg_m3). `help` is one line, shown in the template as a comment.
+/// Walks the keys of a stage's options. A default is the value the member holds before the visit. Keys carry their unit
+/// (density_kg_m3). `help` is one line, a comment of the template. A visitor overrides what it looks at.
 class Visitor {
  public:
   virtual ~Visitor() = default;
-  virtual void enter(std::string_view table, std::string_view help) = 0;  ///< open sub-table [..table]
-  virtual void leave() = 0;
-  virtual void number(std::string_view key, double& value, Range range, std::string_view help) = 0;
-  virtual void optional_number(std::string_view key, std::optional<double>& value, Range range,
-                               std::string_view help) = 0;
-  virtual void integer(std::string_view key, int& value, Range range, std::string_view help) = 0;
-  virtual void flag(std::string_view key, bool& value, std::string_view help) = 0;
-  virtual void text(std::string_view key, std::string& value, std::string_view help) = 0;
+  virtual void enter(std::string_view /*table*/, std::string_view /*help*/) {}  ///< open sub-table [..table]
+  virtual void leave() {}
+  virtual void number(std::string_view /*key*/, double& /*value*/, Range /*range*/, std::string_view /*help*/) {}
+  virtual void optional_number(std::string_view /*key*/, std::optional<double>& /*value*/, Range /*range*/,
+                               std::string_view /*help*/) {}
+  virtual void integer(std::string_view /*key*/, int& /*value*/, Range /*range*/, std::string_view /*help*/) {}
+  virtual void flag(std::string_view /*key*/, bool& /*value*/, std::string_view /*help*/) {}
+  virtual void text(std::string_view /*key*/, std::string& /*value*/, std::string_view /*help*/) {}
   /// Relative paths in a recipe are relative to the recipe's folder; after reading they are absolute. Empty = not
   /// given.
   /// "${NAME}" inside is replaced by the environment variable NAME (an unset one is a fault). What chooses from a
-  /// vector file (vector_source.hpp) stays as it is.
-  virtual void path(std::string_view key, std::filesystem::path& value, std::string_view help) = 0;
-  virtual void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view help) = 0;
-  virtual void integers(std::string_view key, std::vector<int>& value, Range range, std::string_view help) = 0;
+  /// vector file (paths.hpp) stays as it is.
+  virtual void path(std::string_view /*key*/, std::filesystem::path& /*value*/, std::string_view /*help*/) {}
+  virtual void numbers(std::string_view /*key*/, std::vector<double>& /*value*/, Range /*range*/,
+                       std::string_view /*help*/) {}
+  virtual void integers(std::string_view /*key*/, std::vector<int>& /*value*/, Range /*range*/,
+                        std::string_view /*help*/) {}
   /// One of `names`; index is its place in the list.
-  virtual void one_of(std::string_view key, int& index, const std::vector<std::string_view>& names,
-                      std::string_view help) = 0;
-  /// Rows of two numbers; only readers and writers look.
+  virtual void one_of(std::string_view /*key*/, int& /*index*/, const std::vector<std::string_view>& /*names*/,
+                      std::string_view /*help*/) {}
+  /// Rows of two numbers.
   virtual void pairs(std::string_view /*key*/, Pairs& /*value*/, Range /*range*/, std::string_view /*help*/) {}
-  /// A list of names out of `allowed`, or any where that is empty; only readers and writers look.
+  /// A list of names out of `allowed`, or any where that is empty.
   virtual void names(std::string_view /*key*/, std::vector<std::string>& /*value*/,
                      const std::vector<std::string_view>& /*allowed*/, std::string_view /*help*/) {}
   /// Array of tables [[..key]]: begin_list says how many items there are (reader: in the file; writer: `size`).
-  virtual std::size_t begin_list(std::string_view key, std::size_t size, std::string_view help) = 0;
-  virtual void begin_item(std::size_t item) = 0;
-  virtual void end_item() = 0;
-  virtual void end_list() = 0;
+  virtual std::size_t begin_list(std::string_view /*key*/, std::size_t size, std::string_view /*help*/) { return size; }
+  virtual void begin_item(std::size_t /*item*/) {}
+  virtual void end_item() {}
+  virtual void end_list() {}
   /// What a value just described needs of other keys, declared beside it: `otherwise` is the fault where `met` is
-  /// false. Only find_unmet() looks, at options that have been read in full, so that the others may come later in the
-  /// visit.
+  /// false. Only find_unmet() looks, at options read in full: the others may come later in the visit.
   virtual void needs(bool /*met*/, const Fault& /*otherwise*/) {}
 };
 
@@ -93,8 +94,7 @@ void choice(Visitor& v, std::string_view key, Enum& value,
   value = values.at(static_cast<std::size_t>(index));
 }
 
-/// A list as long as `parts`, which are its items. A list of another length makes them NaN (of integers the least
-/// number), and is refused by `place`.
+/// A list of the items `parts`. One of another length makes them NaN (the least integer), and is refused by `place`.
 template <class T>
 void fixed_list(Visitor& v, std::string_view key, const std::vector<T*>& parts, Range range, std::string_view help,
                 const std::string& place) {
@@ -114,8 +114,8 @@ void fixed_list(Visitor& v, std::string_view key, const std::vector<T*>& parts, 
                   "it has " + std::to_string(parts.size()) + " items: " + std::string(help), "Give as many"});
 }
 
-/// A sub-table [..key], whose keys options.describe(v, others...) declares; `others` is what needs() look at besides,
-/// or what messages call the table.
+/// A sub-table [..key], whose keys options.describe(v, others...) declares with defaults, help and what they need of
+/// one another; `others`: what needs() look at, or its name.
 template <class T, class... Others>
 void table(Visitor& v, std::string_view key, T& options, std::string_view help, const Others&... others) {
   v.enter(key, help);
@@ -145,8 +145,7 @@ void list(Visitor& v, std::string_view key, std::vector<T>& items, std::string_v
 /// The visitor that adds what the options need and do not have to `faults`.
 std::unique_ptr<Visitor> make_checker(std::vector<Fault>& faults);
 
-/// What the options need and do not have: the unmet needs() of their description, then the faults of check(), if they
-/// have one.
+/// What the options need and do not have: the unmet needs() of their description, then the faults of check(), if any.
 template <class Options>
 void find_unmet(Options& options, std::vector<Fault>& faults) {
   options.describe(*make_checker(faults));
@@ -159,26 +158,22 @@ class Recipe {
   /// `overrides` replace values of the file; the last of several wins. Each is "key=value", the key with all its tables
   /// and items of lists counted from 0 ("solve.material.density_kg_m3", "solve.part[0].release"), the value in TOML; a
   /// value that is not TOML and begins like no quoted text, list or table is text. Missing tables are made, missing
-  /// items of lists are not. The values are checked like the file's. Messages name "--set key=value" instead of file
-  /// and line.
+  /// items of lists are not. The values are checked like the file's; messages name "--set key=value".
   explicit Recipe(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
   /// The recipe in a text of TOML. Its paths are relative to `folder`; messages call it "recipe.toml".
   static Recipe parse(std::string_view text, const std::filesystem::path& folder = ".",
                       const std::vector<std::string>& overrides = {});
   Recipe(Recipe&& other) noexcept;
   ~Recipe();
-  /// The recipe with other values, each "key=value" as the constructor takes them. Throws RecipeError: what cannot be
-  /// put in.
+  /// The recipe with other values, "key=value" each as above. Throws RecipeError: what cannot be put in.
   Recipe with(const std::vector<std::string>& values) const;
-  /// The overrides of the constructor, as they were given.
-  const std::vector<std::string>& overrides() const;
+  const std::vector<std::string>& overrides() const;  ///< the overrides of the constructor, as they were given
   const std::filesystem::path& file() const;
   std::string scene_name() const;  ///< [scene] name, or the file's stem
   std::string title() const;       ///< [scene] title, or the name
 
   /// A table as the recipe writes it (defaults not filled in, variables in paths not replaced), in an order and a
-  /// spelling that do not depend on the file's: recipes with the same text here say the same. None: there is no such
-  /// table.
+  /// spelling that do not depend on the file's: recipes of the same text say the same. None: no such table.
   std::optional<std::string> canonical(std::string_view table) const;
 
   /// Read table `stage` into options. All faults at once: unknown keys (with "did you mean"), wrong types, values out
@@ -188,10 +183,7 @@ class Recipe {
   Options read(std::string_view stage) const {
     Options options;
     std::vector<Fault> faults;
-    {
-      auto reader = make_reader(stage, faults);
-      options.describe(*reader);
-    }  // the reader's end reports the keys nobody asked for
+    options.describe(*make_reader(stage, faults));  // whose end reports the keys nobody asked for
     if (faults.empty()) find_unmet(options, faults);
     if (!faults.empty()) throw RecipeError(std::move(faults));
     return options;
@@ -212,10 +204,7 @@ std::unique_ptr<Visitor> make_writer(std::string_view stage, bool with_help, std
 template <class Options>
 std::string to_toml(Options options, std::string_view stage, bool with_help) {
   std::string text;
-  {
-    auto writer = make_writer(stage, with_help, text);
-    options.describe(*writer);
-  }
+  options.describe(*make_writer(stage, with_help, text));  // whose end writes
   return text;
 }
 
@@ -236,11 +225,25 @@ std::string to_used_toml(Options options, std::string_view stage) {
   Options fresh;
   fresh.describe(*make_collector(stage, defaults));
   std::string text;
-  {
-    auto writer = make_marking_writer(stage, defaults, text);
-    options.describe(*writer);
-  }
+  options.describe(*make_marking_writer(stage, defaults, text));
   return text;
 }
+
+/// What messages put in front of "key=value" in the place of file, line and column.
+inline constexpr std::string_view set_mark = "--set ";
+
+/// Shortest TOML float that reads back to the same double: 5 -> "5.0".
+std::string toml_number(double value);
+
+/// A TOML basic string with its quotes.
+std::string toml_text(std::string_view text);
+
+/// "> 0", "0 to 1", ">= 0 and < 90"; "" for any.
+std::string range_text(const Range& range);
+
+bool inside(const Range& range, double value);
+
+/// "\"linear\" or \"quadratic\""
+std::string names_text(const std::vector<std::string_view>& names);
 
 }  // namespace talus::recipe

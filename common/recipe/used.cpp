@@ -8,19 +8,10 @@
 
 #include "common/error.hpp"
 #include "common/recipe/toml.hpp"
+#include "common/whole_text.hpp"
 
 namespace talus::recipe {
 namespace {
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto end = std::min(text.find('\n', at), text.size());
-    lines.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return lines;
-}
 
 /// Where character `column` (from 1, as toml++ counts: code points) begins.
 std::size_t byte_of(const std::string& line, std::size_t column) {
@@ -39,13 +30,12 @@ std::string trimmed(const std::string& text) {
 
 class UsedReader {
  public:
-  explicit UsedReader(const std::string& text) : lines_(lines_of(text)) {}
+  explicit UsedReader(const std::string& text) : lines_(lines_in(text)) {}
 
   UsedRecipe read(const toml::table& root) {
     facts();
-    for (const auto& [name, node] : root) {
+    for (const auto& [name, node] : root)
       if (name.str() != "scene" && node.is_table()) table(std::string(name.str()), *node.as_table());
-    }
     std::sort(placed_.begin(), placed_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [line, key] : placed_) used_.keys.push_back(std::move(key));
     return std::move(used_);
@@ -66,14 +56,13 @@ class UsedReader {
     for (const auto& [name, node] : values) {
       const auto below = path + "." + std::string(name.str());
       const auto* items = node.as_array();
-      if (node.is_table()) {
+      if (node.is_table())
         table(below, *node.as_table());
-      } else if (items != nullptr && !items->empty() && items->is_array_of_tables()) {
+      else if (items != nullptr && !items->empty() && items->is_array_of_tables())
         for (std::size_t i = 0; i < items->size(); ++i)
           table(fmt::format("{} {}", below, i + 1), *items->get(i)->as_table());
-      } else {
+      else
         value(path, std::string(name.str()), node);
-      }
     }
   }
 

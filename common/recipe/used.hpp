@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading a *.used.toml back as a table of what was used: facts, keys, values and defaults. (As a recipe it is read by
-// recipe.hpp like any other.)
+// Reading a *.used.toml back as a table of what was used: facts, keys, values and defaults.
 #pragma once
 
 #include <optional>

@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/recipe/walk.hpp"
+#include "common/recipe/parsed.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <tuple>
 
-#include "common/recipe/gone_keys.hpp"
+#include "common/recipe/recipe.hpp"
 #include "common/recipe/suggest.hpp"
-#include "common/recipe/values.hpp"
 
 namespace talus::recipe {
 namespace {
@@ -66,11 +65,10 @@ void Walk::push_item(std::size_t item) {
 void Walk::pop_table() {
   const Frame& frame = frames_.back();
   for (const auto& key : frame.known) all_known_.emplace(key, frame.name);
-  if (frame.table != nullptr) {
+  if (frame.table != nullptr)
     for (const auto& [key, node] : *frame.table)
       if (!contains(frame.known, key.str()))
         unknown_.push_back({std::string(key.str()), frame.name, frame.path, key.source(), frame.known});
-  }
   frames_.pop_back();
 }
 
@@ -99,13 +97,14 @@ std::string_view Walk::advice_on_word(std::string_view key, std::string_view wor
   return advice_on_gone(fmt::format("{}.{}={}", frames_.back().path, key, word));
 }
 
-void Walk::add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend) {
+bool Walk::add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend) {
   const std::string& table = frames_.back().name;
   const std::string name = table.empty() ? std::string(key) : fmt::format("{} {}", table, key);
   const std::string value = value_text(node);
   const std::string what =
       fmt::format("{}: {}{}", place(shown_, node.source()), name, value.empty() ? "" : " = " + value);
   faults_.push_back({node.source().begin, {what, why, mend}});
+  return false;
 }
 
 std::string Walk::mend_for(const Unknown& unknown) const {

@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include "common/recipe/recipe.hpp"
-#include "common/recipe/values.hpp"
 
 namespace talus::recipe {
 namespace {
@@ -27,10 +26,19 @@ struct Extras {
   Defaults* collected = nullptr;       // put the values here as well
 };
 
+/// "[1.0, 2.0]", each item as `text` has it.
+template <class Items, class Text>
+std::string list_of(const Items& items, const Text& text) {
+  std::vector<std::string> words;
+  for (const auto& item : items) words.push_back(text(item));
+  return fmt::format("[{}]", fmt::join(words, ", "));
+}
+
 class Writer : public Visitor {
  public:
-  Writer(std::string_view stage, const Extras& extras, std::string& text)
-      : extras_(extras), with_help_(extras.help), out_(text) {
+  /// Without a `text` nobody reads it.
+  Writer(std::string_view stage, const Extras& extras, std::string* text)
+      : extras_(extras), out_(text != nullptr ? *text : unread_) {
     root_.path = stage;
     open_.push_back(&root_);
   }
@@ -48,7 +56,7 @@ class Writer : public Visitor {
                        std::string_view help) override {
     if (value)
       line(key, toml_number(*value), help, range_text(range));
-    else if (with_help_)
+    else if (extras_.help)
       line(fmt::format("# {}", key), "...", help, range_text(range));
   }
   void integer(std::string_view key, int& value, Range range, std::string_view help) override {
@@ -64,15 +72,11 @@ class Writer : public Visitor {
     line(key, toml_text(value.generic_string()), help, "");
   }
   void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view help) override {
-    std::vector<std::string> words;
-    words.reserve(value.size());
-    for (const double item : value) words.push_back(toml_number(item));
-    line(key, fmt::format("[{}]", fmt::join(words, ", ")), help, range_text(range));
+    line(key, list_of(value, toml_number), help, range_text(range));
   }
   void pairs(std::string_view key, Pairs& value, Range range, std::string_view help) override {
-    std::vector<std::string> rows;
-    for (const auto& [a, b] : value) rows.push_back(fmt::format("[{}, {}]", toml_number(a), toml_number(b)));
-    line(key, fmt::format("[{}]", fmt::join(rows, ", ")), help, range_text(range));
+    const auto row = [](const auto& pair) { return list_of(pair, toml_number); };
+    line(key, list_of(value, row), help, range_text(range));
   }
   void integers(std::string_view key, std::vector<int>& value, Range range, std::string_view help) override {
     line(key, fmt::format("[{}]", fmt::join(value, ", ")), help, range_text(range));
@@ -83,13 +87,11 @@ class Writer : public Visitor {
   }
   void names(std::string_view key, std::vector<std::string>& value, const std::vector<std::string_view>& allowed,
              std::string_view help) override {
-    std::vector<std::string> words;
-    for (const std::string& word : value) words.push_back(toml_text(word));
-    line(key, fmt::format("[{}]", fmt::join(words, ", ")), help, names_text(allowed));
+    line(key, list_of(value, toml_text), help, names_text(allowed));
   }
   std::size_t begin_list(std::string_view key, std::size_t size, std::string_view help) override {
     lists_.push_back({std::string(key), std::string(help), size == 0});
-    return size == 0 && (with_help_ || extras_.collected != nullptr) ? 1 : size;
+    return size == 0 && (extras_.help || extras_.collected != nullptr) ? 1 : size;
   }
   void begin_item(std::size_t item) override {
     const List& list = lists_.back();
@@ -115,7 +117,7 @@ class Writer : public Visitor {
   void line(std::string_view key, const std::string& value, std::string_view help, const std::string& range) {
     Table& table = *open_.back();
     const char* mark = table.example ? "# " : "";
-    if (with_help_)
+    if (extras_.help)
       table.keys += fmt::format("{}# {}{}\n", mark, help, range.empty() ? "" : fmt::format(" [{}]", range));
     table.keys += fmt::format("{}{} = {}{}\n", mark, key, value, default_mark(table, key, value));
   }
@@ -132,7 +134,7 @@ class Writer : public Visitor {
 
   void write(const Table& table) {
     if (!out_.empty() && !out_.ends_with("\n\n")) out_ += '\n';
-    if (with_help_ && !table.help.empty()) out_ += fmt::format("{}# {}\n", table.example ? "# " : "", table.help);
+    if (extras_.help && !table.help.empty()) out_ += fmt::format("{}# {}\n", table.example ? "# " : "", table.help);
     out_ += fmt::format("{}{}{}{}\n", table.example ? "# " : "", table.item ? "[[" : "[", table.path,
                         table.item ? "]]" : "]");
     out_ += table.keys;
@@ -140,38 +142,25 @@ class Writer : public Visitor {
   }
 
   Extras extras_;
-  bool with_help_;
+  std::string unread_;
   std::string& out_;
   Table root_;
   std::vector<Table*> open_;
   std::vector<List> lists_;
 };
 
-struct Unread {
-  std::string text;
-};
-
-/// A writer whose text nobody reads.
-class Collector : private Unread, public Writer {  // the text first: it must outlive the writer
- public:
-  Collector(std::string_view stage, Defaults& values) : Writer(stage, Extras{.collected = &values}, text_of(*this)) {}
-
- private:
-  static std::string& text_of(Unread& unread) { return unread.text; }
-};
-
 }  // namespace
 
 std::unique_ptr<Visitor> make_writer(std::string_view stage, bool with_help, std::string& text) {
-  return std::make_unique<Writer>(stage, Extras{.help = with_help}, text);
+  return std::make_unique<Writer>(stage, Extras{.help = with_help}, &text);
 }
 
 std::unique_ptr<Visitor> make_marking_writer(std::string_view stage, const Defaults& defaults, std::string& text) {
-  return std::make_unique<Writer>(stage, Extras{.defaults = &defaults}, text);
+  return std::make_unique<Writer>(stage, Extras{.defaults = &defaults}, &text);
 }
 
 std::unique_ptr<Visitor> make_collector(std::string_view stage, Defaults& values) {
-  return std::make_unique<Collector>(stage, values);
+  return std::make_unique<Writer>(stage, Extras{.collected = &values}, nullptr);
 }
 
 }  // namespace talus::recipe

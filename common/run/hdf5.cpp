@@ -2,21 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/run/hdf5.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <utility>
 
-#include <fmt/format.h>
+#include <unistd.h>
 
 #include "common/error.hpp"
-#include "common/run/hdf5_id.hpp"
-#include "common/run/prepare_hdf5.hpp"
-#include "common/stage/input_file.hpp"
-#include "common/stage/write_fault.hpp"
+#include "common/run/run_file.hpp"
+#include "common/stage/files.hpp"
 
 namespace talus::h5 {
 namespace {
@@ -54,15 +48,28 @@ void end_before_libraries() {
   static_cast<void>(once);
 }
 
+constexpr std::size_t longest_text = std::size_t{1} << 24;  // bytes; the longest that is written is a CRS
+
+bool is_single(hid_t attribute) {
+  const Id space(H5Aget_space(attribute), H5Sclose);
+  return !space.bad() && H5Sget_simple_extent_npoints(space) == 1;
+}
+
+bool read_scalar(hid_t file, const std::string& object, const std::string& name, hid_t type, void* value) {
+  const Id attribute(H5Aopen_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (attribute.bad() || !is_single(attribute)) return false;
+  const Id in_file(H5Aget_type(attribute), H5Tclose);
+  return !in_file.bad() && same_class(in_file, type) && H5Aread(attribute, type, value) >= 0;
+}
+
 }  // namespace
 
-/// Before the first call of HDF5. Its own error printing goes: ours says it once. Its clean-up at exit goes too: a file
-/// that a full disk kept from closing makes it write again and crash, and every file here is closed by its owner
-/// anyway.
+/// Before the first call of HDF5. Its own error printing goes: ours says it once. Its clean-up at exit goes too: it
+/// would write again and crash over a file that a full disk kept from closing; every file here is closed by its owner.
 void prepare_library() {
   static const bool once = [] {
     // Its own locks fail where a file system has none, and guard nothing here: files are read under their final names,
-    // when they are whole, and the output folder has a lock (common/stage/output_lock.hpp).
+    // when they are whole, and the output folder has a lock (common/stage/files.hpp).
     ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
     H5dont_atexit();
     return true;
@@ -150,12 +157,10 @@ std::vector<std::string> File::children(const std::string& group) const {
     static_cast<std::vector<Link>*>(data)->emplace_back(link->corder, name);
     return 0;
   };
-  // In the order of the file, and sorted here: HDF5 1.10 frees what it never set where it sorts a large group itself
-  // and a read fails.
+  // In the order of the file, and sorted here: HDF5 1.10 frees what it never set where it sorts and a read fails.
   if (H5Literate_by_name(id_, group.c_str(), H5_INDEX_CRT_ORDER, H5_ITER_NATIVE, nullptr, collect, &links,
-                         H5P_DEFAULT) < 0) {
+                         H5P_DEFAULT) < 0)
     fail(fmt::format("cannot read group {}", group));
-  }
   std::stable_sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.first < b.first; });
   std::vector<std::string> names;
   for (Link& link : links) names.push_back(std::move(link.second));
@@ -164,6 +169,67 @@ std::vector<std::string> File::children(const std::string& group) const {
 
 void File::refuse(const std::string& problem, const std::string& why) const {
   throw DataError({fmt::format("{}: {}", naming_.shown.string(), problem), why, naming_.mend});
+}
+
+void File::set_attribute(const std::string& object, const std::string& name, hid_t space, hid_t in_file,
+                         hid_t in_memory, const void* data) {
+  Id attribute(
+      H5Acreate_by_name(id_, object.c_str(), name.c_str(), in_file, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Aclose);
+  if (attribute.bad() || H5Awrite(attribute, in_memory, data) < 0 || !attribute.close())
+    fail(fmt::format("attribute {} {}", object, name));
+}
+
+void File::set_text(const std::string& object, const std::string& name, const std::string& value) {
+  // Fixed length, as VTK asks of its Type attribute; UTF-8 only where the text is not plain ASCII.
+  const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, std::max<std::size_t>(value.size(), 1));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  if (std::any_of(value.begin(), value.end(), [](char c) { return static_cast<unsigned char>(c) > 127; }))
+    H5Tset_cset(type, H5T_CSET_UTF8);
+  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  set_attribute(object, name, space, type, type, value.empty() ? "\0" : value.data());
+}
+
+void File::set_number(const std::string& object, const std::string& name, double value) {
+  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  set_attribute(object, name, space, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+
+void File::set_integers(const std::string& object, const std::string& name, std::span<const std::int64_t> values) {
+  const hsize_t count = values.size();
+  const Id space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose);
+  set_attribute(object, name, space, H5T_STD_I64LE, H5T_NATIVE_INT64, values.data());
+}
+
+std::string File::text(const std::string& object, const std::string& name) const {
+  const auto problem = fmt::format("attribute {} {} cannot be read", object, name);
+  const Id attribute(H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (attribute.bad()) fail(problem);
+  const Id type(H5Aget_type(attribute), H5Tclose);
+  if (type.bad() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || !is_single(attribute))
+    refuse(problem, "it is not one text");
+  const std::size_t size = H5Tget_size(type);
+  if (size > longest_text || size > H5Aget_storage_size(attribute))
+    refuse(problem, fmt::format("it claims to have {} bytes", size));
+  std::string value(size, '\0');
+  if (H5Aread(attribute, type, value.data()) < 0) fail(problem);
+  value.resize(std::min(value.find('\0'), value.size()));
+  return value;
+}
+
+double File::number(const std::string& object, const std::string& name) const {
+  double value = 0;
+  if (!read_scalar(id_, object, name, H5T_NATIVE_DOUBLE, &value))
+    fail(fmt::format("attribute {} {} cannot be read", object, name));
+  return value;
+}
+
+std::int64_t File::integer(const std::string& object, const std::string& name) const {
+  std::int64_t value = 0;
+  if (!read_scalar(id_, object, name, H5T_NATIVE_INT64, &value))
+    fail(fmt::format("attribute {} {} cannot be read", object, name));
+  return value;
 }
 
 }  // namespace talus::h5

@@ -2,17 +2,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A thin layer over the HDF5 C API: every call is checked, every failure is a DataError that names the file and the
 // system's reason. Objects are named by their path in the file ("/maps/terrain"), so no handle leaves this header.
-// Groups are written and read in hdf5.cpp, attributes and datasets in files of their own.
+// Groups and attributes are written and read in hdf5.cpp, datasets in hdf5_datasets.cpp.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
-#include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <hdf5.h>
 
 namespace talus::h5 {
@@ -21,31 +25,12 @@ using Dims = std::vector<hsize_t>;
 
 /// The type of HDF5 that a type of C++ is in memory.
 template <class T>
-hid_t native_type();
-/// The type of HDF5 that a type of C++ is in memory.
-template <>
-inline hid_t native_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-/// The type of HDF5 that a type of C++ is in memory.
-template <>
-inline hid_t native_type<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-/// The type of HDF5 that a type of C++ is in memory.
-template <>
-inline hid_t native_type<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-/// The type of HDF5 that a type of C++ is in memory.
-template <>
-inline hid_t native_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-/// The type of HDF5 that a type of C++ is in memory.
-template <>
-inline hid_t native_type<std::uint8_t>() {
-  return H5T_NATIVE_UINT8;
+hid_t native_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
 }
 
 /// What messages say of a file: its name as the user knows it, and how to mend it where it cannot be read.
@@ -54,11 +39,32 @@ struct Naming {
   std::string mend;
 };
 
+/// The numbers that may stand in a dataset.
+struct Allowed {
+  double low = -std::numeric_limits<double>::max(), high = std::numeric_limits<double>::max();
+  bool none = false;  ///< NaN says that there is no value
+  const char* why = "numbers must be finite";
+};
+
+/// Any finite number.
+inline constexpr Allowed finite{};
+/// Any finite number, or none.
+inline constexpr Allowed finite_or_none{.none = true, .why = "numbers must be finite, or NaN where there is none"};
+/// 0 or more.
+inline constexpr Allowed not_negative{.low = 0, .why = "it cannot be negative, nor NaN, nor without end"};
+/// 0 or more, or none.
+inline constexpr Allowed not_negative_or_none{
+    .low = 0, .none = true, .why = "it cannot be negative, nor without end; NaN stands for none"};
+
+class File;
+/// Refuses the file where a value of dataset `path` is not allowed.
+template <class T>
+void check_values(const File& file, const std::string& path, std::span<const T> values, const Allowed& allowed);
+
 /// An open HDF5 file. Not thread-safe, as HDF5 is not.
 class File {
  public:
-  /// Create (truncate) `path`.
-  static File create(const std::filesystem::path& path, Naming naming);
+  static File create(const std::filesystem::path& path, Naming naming);  ///< create (truncate) `path`
   /// Open for reading. Missing, truncated or not HDF5: DataError.
   static File open(const std::filesystem::path& path, Naming naming);
   File(File&& other) noexcept;
@@ -69,8 +75,7 @@ class File {
   /// Flush and close. Throws DataError when bytes could not be written (disk full).
   void close();
 
-  /// Makes a group; those above it must be there.
-  void make_group(const std::string& path);
+  void make_group(const std::string& path);  ///< makes a group; those above it must be there
   /// True when a group or dataset of that path is there. Throws DataError where the file does not let itself be read:
   /// what may be missing is not taken for missing then.
   bool exists(const std::string& path) const;
@@ -102,13 +107,17 @@ class File {
   void write(const std::string& path, const Dims& dims, std::span<const T> values) {
     write_raw(path, dims, native_type<T>(), values.data(), values.size());
   }
+  /// Write a list, likewise.
+  template <class T>
+  void write_list(const std::string& path, std::span<const T> values) {
+    write<T>(path, {values.size()}, values);
+  }
   /// Add `rows` rows of shape `row` (empty: scalars) to an extendible dataset, made on the first call.
   template <class T>
   void append(const std::string& path, hsize_t rows, const Dims& row, std::span<const T> values) {
     append_raw(path, rows, row, native_type<T>(), values.data(), values.size());
   }
-  /// The shape of a dataset.
-  Dims dims(const std::string& path) const;
+  Dims dims(const std::string& path) const;  ///< the shape of a dataset
   /// The length of a list: of a dataset that must have one dimension.
   std::size_t length(const std::string& path) const;
   /// Read a whole dataset whose shape must be `expected`. Like the readings below it throws DataError where the dataset
@@ -125,13 +134,26 @@ class File {
   std::vector<T> read_list(const std::string& path) const {
     return read<T>(path, {length(path)});
   }
-
   /// Read rows [first, first + rows) of a dataset whose rows must have the shape `row` (empty: single numbers), flat.
   template <class T>
   std::vector<T> read_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row) const {
     std::vector<T> values(checked_rows(path, first, rows, row, native_type<T>()));
     if (!values.empty()) read_rows_raw(path, first, rows, native_type<T>(), values.data());
     return values;
+  }
+  /// The same readings; refuse values that are not allowed.
+  template <class T>
+  std::vector<T> read(const std::string& path, const Dims& expected, const Allowed& allowed) const {
+    return checked(path, read<T>(path, expected), allowed);
+  }
+  template <class T>
+  std::vector<T> read_list(const std::string& path, const Allowed& allowed) const {
+    return checked(path, read_list<T>(path), allowed);
+  }
+  template <class T>
+  std::vector<T> read_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row,
+                           const Allowed& allowed) const {
+    return checked(path, read_rows<T>(path, first, rows, row), allowed);
   }
 
   /// Throws the DataError of this file: "FILE: `problem` (reason HDF5 gives). mend", or where it is being written, what
@@ -141,7 +163,14 @@ class File {
   [[noreturn]] void refuse(const std::string& problem, const std::string& why) const;
 
  private:
+  template <class T>
+  std::vector<T> checked(const std::string& path, std::vector<T> values, const Allowed& allowed) const {
+    check_values<T>(*this, path, values, allowed);
+    return values;
+  }
   File(hid_t id, Naming naming, bool writing) : id_(id), naming_(std::move(naming)), writing_(writing) {}
+  void set_attribute(const std::string& object, const std::string& name, hid_t space, hid_t in_file, hid_t in_memory,
+                     const void* data);
   void write_raw(const std::string& path, const Dims& dims, hid_t type, const void* data, std::size_t count);
   void append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
                   std::size_t count);
@@ -159,5 +188,54 @@ class File {
   std::map<std::string, hid_t> growing_;  ///< datasets of append(), open so that HDF5 keeps their last, partial chunks
   bool plain_ = false;
 };
+
+template <class T>
+void check_values(const File& file, const std::string& path, std::span<const T> values, const Allowed& allowed) {
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const auto value = static_cast<double>(values[n]);
+    if ((value >= allowed.low && value <= allowed.high) || (allowed.none && std::isnan(value))) continue;
+    file.refuse(fmt::format("dataset {} holds {:g} at place {}", path, value, n), allowed.why);
+  }
+}
+
+/// Refuses the file where an attribute is not allowed.
+inline double checked_number(const File& file, const std::string& object, const std::string& name,
+                             const Allowed& allowed) {
+  const double value = file.number(object, name);
+  if (!((value >= allowed.low && value <= allowed.high) || (allowed.none && std::isnan(value))))
+    file.refuse(fmt::format("attribute {} {} is {:g}", object, name, value), allowed.why);
+  return value;
+}
+
+/// Refuses the file where a list does not grow from value to value, or holds a number that is not finite.
+inline void check_growing(const File& file, const std::string& path, std::span<const double> values, bool strictly) {
+  check_values(file, path, values, finite);
+  for (std::size_t n = 1; n < values.size(); ++n) {
+    if (strictly ? values[n] > values[n - 1] : values[n] >= values[n - 1]) continue;
+    file.refuse(fmt::format("dataset {} holds {:g} behind {:g}", path, values[n], values[n - 1]), "times must grow");
+  }
+}
+
+/// Closes an HDF5 identifier of any kind.
+class Id {
+ public:
+  Id(hid_t id, herr_t (*closer)(hid_t)) : id_(id), close_(closer) {}
+  Id(const Id&) = delete;
+  Id& operator=(const Id&) = delete;
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }
+  bool bad() const { return id_ < 0; }
+  /// Close now and say whether it worked: closing may be what writes.
+  bool close() { return close_(std::exchange(id_, hid_t{-1})) >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Whether a type of a file is one number of the class (whole, real) of a type in memory.
+inline bool same_class(hid_t in_file, hid_t in_memory) { return H5Tget_class(in_file) == H5Tget_class(in_memory); }
 
 }  // namespace talus::h5

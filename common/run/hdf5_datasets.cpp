@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "common/run/hdf5.hpp"
-#include "common/run/hdf5_id.hpp"
 
 namespace talus::h5 {
 namespace {
@@ -44,9 +43,8 @@ void File::write_raw(const std::string& path, const Dims& dims, hid_t type, cons
   const Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   if (count > 0 && !plain_) set_compression(list, chunk_of(dims));
   Id set(H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose);
-  if (set.bad() || (count > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) || !set.close()) {
+  if (set.bad() || (count > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) || !set.close())
     fail(path);
-  }
 }
 
 hid_t File::create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type) {
@@ -80,9 +78,8 @@ void File::append_raw(const std::string& path, hsize_t rows, const Dims& row, hi
   const Id space(H5Dget_space(set), H5Sclose);
   const Id memory(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
   if (H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) < 0 ||
-      H5Dwrite(set, type, memory, space, H5P_DEFAULT, data) < 0) {
+      H5Dwrite(set, type, memory, space, H5P_DEFAULT, data) < 0)
     fail(path);
-  }
 }
 
 Dims File::dims(const std::string& path) const {
@@ -91,9 +88,8 @@ Dims File::dims(const std::string& path) const {
   const Id space(H5Dget_space(set), H5Sclose);
   Dims dims(static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space), 0)));
   if (space.bad() || H5Sget_simple_extent_type(space) == H5S_NULL ||
-      H5Sget_simple_extent_dims(space, dims.data(), nullptr) < 0) {
+      H5Sget_simple_extent_dims(space, dims.data(), nullptr) < 0)
     fail(fmt::format("dataset {} has no shape", path));
-  }
   return dims;
 }
 
@@ -118,10 +114,9 @@ std::size_t File::checked_count(const std::string& path, const Dims& expected, h
 std::size_t File::checked_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row,
                                hid_t type) const {
   const auto found = dims(path);
-  if (found.empty() || Dims(found.begin() + 1, found.end()) != row) {
+  if (found.empty() || Dims(found.begin() + 1, found.end()) != row)
     refuse_shape(path, found,
                  row.empty() ? "a list is asked for" : fmt::format("rows of {} are asked for", shape_text(row)));
-  }
   if (rows > found[0] || first > found[0] - rows)
     refuse_shape(path, found, fmt::format("the rest of the file speaks of rows {} to {}", first, first + rows));
   check_stored(path, found, type);
@@ -133,25 +128,22 @@ void File::check_stored(const std::string& path, const Dims& shape, hid_t type) 
   const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
   const Id in_file(H5Dget_type(set), H5Tclose);
   if (set.bad() || in_file.bad()) fail(fmt::format("dataset {} cannot be read", path));
-  if (!same_class(in_file, type)) {
+  if (!same_class(in_file, type))
     refuse(fmt::format("dataset {} holds values of another kind", path),
            H5Tget_class(type) == H5T_INTEGER ? "whole numbers are asked for" : "real numbers are asked for");
-  }
   constexpr double most_packed = 1100;
   double bytes = static_cast<double>(H5Tget_size(in_file));
   for (const hsize_t count : shape) bytes *= static_cast<double>(count);
   const auto stored = static_cast<double>(H5Dget_storage_size(set));
-  if (bytes > most_packed * stored) {
+  if (bytes > most_packed * stored)
     refuse(fmt::format("dataset {} has shape {}", path, shape_text(shape)),
            fmt::format("but only {:.0f} bytes in the file", stored));
-  }
 }
 
 void File::read_raw(const std::string& path, hid_t type, void* data) const {
   const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
-  if (set.bad() || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
+  if (set.bad() || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
     fail(fmt::format("dataset {} cannot be read", path));
-  }
 }
 
 void File::read_rows_raw(const std::string& path, hsize_t first, hsize_t rows, hid_t type, void* data) const {
@@ -163,9 +155,8 @@ void File::read_rows_raw(const std::string& path, hsize_t first, hsize_t rows, h
   const Id there(H5Dget_space(set), H5Sclose);
   const Id here(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
   const bool chosen = H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) >= 0;
-  if (!chosen || H5Dread(set, type, here, there, H5P_DEFAULT, data) < 0) {
+  if (!chosen || H5Dread(set, type, here, there, H5P_DEFAULT, data) < 0)
     fail(fmt::format("dataset {} cannot be read", path));
-  }
 }
 
 }  // namespace talus::h5

@@ -81,19 +81,19 @@ enum class MergedCells { mean, largest, smallest };
 
 /// A map among the products: GeoTIFF, NetCDF, and a layer of the GIS project.
 struct MapProduct {
-  const char* title = "";         ///< long_name of GeoTIFF and NetCDF
-  const char* netcdf_name = "";   ///< "" = not in the NetCDF file
+  const char* title = "";         ///< long_name of GeoTIFF and NetCDF; "" = the meaning
+  const char* netcdf_name = "";   ///< "" = the name
   const char* cell_methods = "";  ///< CF; "" = none
   const char* legend = "";        ///< in the GIS project, with the unit; "" = no GeoTIFF
   MapClasses classes = MapClasses::thickness;
+  bool in_netcdf = true;
   bool zero_inside = true;  ///< no data inside the domain means zero (not so of a time: it never came)
 };
 
-/// A map as a layer of the report.
 struct MapLayer {
   const char* id = "";     ///< "" = not in the report
   const char* title = "";  ///< in the list of layers
-  const char* unit = "";   ///< as people write it
+  const char* unit = "m";  ///< as people write it
   const char* about = "";  ///< a sentence; "{:g}" in it stands for the run's threshold [m]
   int decimals = 2;
   MergedCells merge = MergedCells::largest;
@@ -102,49 +102,42 @@ struct MapLayer {
 
 /// One of the RunMaps, wherever it goes.
 struct MapField {
-  const char* name;       ///< in run.h5, and the GeoTIFF's file name
-  MapMember values;       ///< in the unit below
-  const char* unit;       ///< in UDUNITS' words: "m s-1"
-  const char* meaning;    ///< long_name in run.h5
-  bool optional = false;  ///< empty in runs that have none
+  const char* name;        ///< in run.h5, and the GeoTIFF's file name
+  MapMember values;        ///< in the unit below
+  const char* unit = "m";  ///< in UDUNITS' words: "m s-1"
+  const char* meaning;     ///< long_name in run.h5
+  bool optional = false;   ///< empty in runs that have none
   MapProduct product = {};
   MapLayer layer = {};
+
+  const char* title() const { return product.title[0] == '\0' ? meaning : product.title; }
+  const char* netcdf_name() const { return product.netcdf_name[0] == '\0' ? name : product.netcdf_name; }
 };
 
-/// All maps of a run, in the order in which they are written. Those by release (RunMaps::deposit_of) are written as
-/// deposit_thickness is.
+/// All maps of a run, in the order in which they are written; those by release (deposit_of) as deposit_thickness.
 inline constexpr MapField map_fields[] = {
     {.name = "deposit_thickness",
      .values = &RunMaps::deposit_thickness,
-     .unit = "m",
      .meaning = "thickness at the end, vertical",
      .product = {.title = "deposit thickness at the end, vertical",
-                 .netcdf_name = "deposit_thickness",
                  .cell_methods = "area: mean",
                  .legend = "Deposit thickness, vertical [m]"},
      .layer = {.id = "deposit",
                .title = "Deposit thickness",
-               .unit = "m",
                .about = "Thickness at the end of the run, vertical.",
                .merge = MergedCells::mean}},
     {.name = "peak_thickness",
      .values = &RunMaps::peak_thickness,
-     .unit = "m",
      .meaning = "largest thickness over time, vertical",
      .product = {.title = "peak thickness, vertical",
-                 .netcdf_name = "peak_thickness",
                  .cell_methods = "area: mean time: maximum",
                  .legend = "Peak thickness, vertical [m]"},
-     .layer = {.id = "peak_thickness",
-               .title = "Peak thickness",
-               .unit = "m",
-               .about = "Largest thickness over time, vertical."}},
+     .layer = {.id = "peak_thickness", .title = "Peak thickness", .about = "Largest thickness over time, vertical."}},
     {.name = "peak_speed",
      .values = &RunMaps::peak_speed,
      .unit = "m s-1",
      .meaning = "largest depth-mean speed over time",
      .product = {.title = "peak of the depth-mean speed",
-                 .netcdf_name = "peak_speed",
                  .cell_methods = "time: maximum",
                  .legend = "Peak speed [m/s]",
                  .classes = MapClasses::speed},
@@ -159,7 +152,6 @@ inline constexpr MapField map_fields[] = {
      .unit = "kPa",
      .meaning = "largest rho v^2 over time",
      .product = {.title = "peak flow pressure, density times speed squared",
-                 .netcdf_name = "peak_pressure",
                  .cell_methods = "time: maximum",
                  .legend = "Peak pressure [kPa]",
                  .classes = MapClasses::pressure},
@@ -173,7 +165,6 @@ inline constexpr MapField map_fields[] = {
      .unit = "s",
      .meaning = "time of first arrival",
      .product = {.title = "time from the start to the first arrival",
-                 .netcdf_name = "arrival_time",
                  .legend = "Arrival time [s]",
                  .classes = MapClasses::time,
                  .zero_inside = false},
@@ -185,55 +176,37 @@ inline constexpr MapField map_fields[] = {
                .merge = MergedCells::smallest}},
     {.name = "initial_thickness",
      .values = &RunMaps::initial_thickness,
-     .unit = "m",
      .meaning = "thickness at the start, vertical",
-     .product = {.title = "thickness at the start, vertical",
-                 .netcdf_name = "initial_thickness",
-                 .cell_methods = "area: mean"},
+     .product = {.cell_methods = "area: mean"},
      .layer = {.id = "release",
                .title = "Release thickness",
-               .unit = "m",
                .about = "Thickness at the start, vertical.",
                .merge = MergedCells::mean}},
     {.name = "terrain",
      .values = &RunMaps::terrain,
-     .unit = "m",
      .meaning = "elevation of the bed",
-     .product = {.title = "elevation of the bed",
-                 .netcdf_name = "bed_elevation",
-                 .cell_methods = "area: mean",
-                 .zero_inside = false}},
+     .product = {.netcdf_name = "bed_elevation", .cell_methods = "area: mean", .zero_inside = false}},
     {.name = "before",
      .values = &RunMaps::before,
-     .unit = "m",
-     .meaning = "elevation of the surface before the failure"},
+     .meaning = "elevation of the surface before the failure",
+     .product = {.in_netcdf = false}},
     {.name = "eroded_depth",
      .values = &RunMaps::eroded_depth,
-     .unit = "m",
      .meaning = "depth of ground that went along, vertical",
      .optional = true,
-     .product = {.title = "depth of ground that went along, vertical",
-                 .netcdf_name = "eroded_depth",
-                 .cell_methods = "area: mean",
-                 .legend = "Depth of erosion, vertical [m]"},
+     .product = {.cell_methods = "area: mean", .legend = "Depth of erosion, vertical [m]"},
      .layer = {.id = "eroded",
                .title = "Eroded depth",
-               .unit = "m",
                .about = "Depth of the ground that went along, vertical.",
                .merge = MergedCells::mean,
                .ramp = Ramp::sea}},
     {.name = "critical_thickness",
      .values = &RunMaps::critical_thickness,
-     .unit = "m",
      .meaning = "thickness of the mass that fails first, vertical",
      .optional = true,
-     .product = {.title = "thickness of the mass that fails first, vertical",
-                 .netcdf_name = "critical_thickness",
-                 .cell_methods = "area: mean",
-                 .legend = "Critical mass, vertical thickness [m]"},
+     .product = {.cell_methods = "area: mean", .legend = "Critical mass, vertical thickness [m]"},
      .layer = {.id = "critical",
                .title = "Critical mass",
-               .unit = "m",
                .about = "Thickness of the mass that fails first as strength is lowered, vertical.",
                .merge = MergedCells::mean}},
     {.name = "failure_displacement",
@@ -241,9 +214,7 @@ inline constexpr MapField map_fields[] = {
      .unit = "1",
      .meaning = "displacement at failure over that of the mass that fails",
      .optional = true,
-     .product = {.title = "displacement at failure over that of the mass that fails",
-                 .netcdf_name = "failure_displacement",
-                 .cell_methods = "area: mean",
+     .product = {.cell_methods = "area: mean",
                  .legend = "Displacement at failure, share [-]",
                  .classes = MapClasses::share},
      .layer = {.id = "failure",

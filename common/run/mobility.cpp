@@ -5,13 +5,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/run/point_frames.hpp"
+
 namespace talus {
+
+Motion read_motion(const std::filesystem::path& run_file, double faster_than) {
+  const PointFrames frames(run_file);
+  Motion motion{.time = frames.time(), .volume = {}, .mean_speed = {}};
+  for (std::size_t frame = 0; frame < motion.time.size(); ++frame) {
+    const auto [volume, mean_speed] = frames.moving(frame, faster_than);
+    motion.volume.push_back(volume);
+    motion.mean_speed.push_back(mean_speed);
+  }
+  return motion;
+}
 
 double release_limit(const RunMaps& maps, double threshold) {
   double thickest = 0;
-  for (const double h : maps.initial_thickness) {
+  for (const double h : maps.initial_thickness)
     if (h > thickest) thickest = h;
-  }
   return std::min(threshold, 0.1 * thickest);
 }
 
@@ -36,7 +48,7 @@ Place nearest_to_middle(const std::vector<Place>& places) {
 std::optional<Place> crown(const RunMaps& maps, double threshold) {
   const double limit = release_limit(maps, threshold);
   std::vector<Place> highest;
-  for (int row = 0; row < maps.grid.rows; ++row) {
+  for (int row = 0; row < maps.grid.rows; ++row)
     for (int column = 0; column < maps.grid.columns; ++column) {
       const auto i = maps.grid.index(column, row);
       if (!(maps.initial_thickness[i] > limit) || std::isnan(maps.before[i])) continue;
@@ -44,7 +56,6 @@ std::optional<Place> crown(const RunMaps& maps, double threshold) {
       if (!highest.empty() && maps.before[i] > highest.front().z + level) highest.clear();
       highest.push_back({maps.grid.x(column), maps.grid.y(row), maps.before[i]});
     }
-  }
   if (highest.empty()) return std::nullopt;
   return nearest_to_middle(highest);
 }
@@ -52,14 +63,13 @@ std::optional<Place> crown(const RunMaps& maps, double threshold) {
 std::optional<Place> farthest(const MapGrid& grid, const std::vector<double>& values, double threshold,
                               const Place& from, const std::vector<double>& surface) {
   std::optional<Place> place;
-  for (int row = 0; row < grid.rows; ++row) {
+  for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const auto i = grid.index(column, row);
       if (!(values[i] > threshold)) continue;
       const Place here{grid.x(column), grid.y(row), surface.empty() ? 0 : surface[i]};
       if (!place || plan_distance(here, from) > plan_distance(*place, from)) place = here;
     }
-  }
   return place;
 }
 
@@ -69,7 +79,7 @@ std::optional<Place> centre_of_mass(const MapGrid& grid, const std::vector<doubl
                                     const std::vector<double>& bed) {
   Place sum;
   double mass = 0;
-  for (int row = 0; row < grid.rows; ++row) {
+  for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const auto i = grid.index(column, row);
       const double h = thickness[i];
@@ -80,7 +90,6 @@ std::optional<Place> centre_of_mass(const MapGrid& grid, const std::vector<doubl
       sum.z += h * z;
       mass += h;
     }
-  }
   if (!(mass > 0)) return std::nullopt;
   return Place{sum.x / mass, sum.y / mass, sum.z / mass};
 }

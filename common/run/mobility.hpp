@@ -1,15 +1,29 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far and how low the mass went.
+// How far and how low the mass went, and how much of it is still in motion.
 #pragma once
 
-#include <array>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "common/run/run_file.hpp"
 
 namespace talus {
+
+/// What is slower creeps or rests [m/s]: `moving_volume_m3` and `moving_speed_m_s` of a history count what is faster.
+inline constexpr double moving_faster_than = 1.0;
+
+/// Volume of the points that move at each frame of the points.
+struct Motion {
+  std::vector<double> time;        ///< [s]
+  std::vector<double> volume;      ///< of points faster than the speed asked for [m3]
+  std::vector<double> mean_speed;  ///< of all of these, by volume [m/s]; 0 where none moves
+};
+
+/// Read velocity and volume of the points, a part at a time. Empty where the run has no frames of points
+/// (point_frames = false). Throws DataError: unreadable.
+Motion read_motion(const std::filesystem::path& run_file, double faster_than);
 
 /// A place on the ground [m].
 struct Place {
@@ -20,8 +34,7 @@ struct Place {
 /// whole release is thin [m].
 double release_limit(const RunMaps& maps, double threshold);
 
-/// Highest cell of the release (see release_limit) on the surface before the failure; of an edge that is level, its
-/// middle. Empty without a release.
+/// Highest cell of the release on the surface before the failure; of a level edge its middle. Empty without a release.
 std::optional<Place> crown(const RunMaps& maps, double threshold);
 
 /// The cell centre above `threshold` farthest (in plan, as the crow flies) from `from`; z is taken from `surface`,

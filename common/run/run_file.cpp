@@ -1,35 +1,69 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writing run.h5. Layout: attributes of / = summary; /VTKHDF = points (vtkhdf.hpp); /maps, /frames, /history,
-// /profile, /provenance, /places, /findings.
+// run.h5. Layout: attributes of / = summary; /VTKHDF = points (point_frames.hpp); /maps, /frames, /history, /profile,
+// /provenance, /places, /findings.
 #include "common/run/run_file.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <stdexcept>
-#include <string>
 
 #include <fmt/format.h>
 
-#include "common/run/grid_attributes.hpp"
+#include "common/error.hpp"
 #include "common/run/hdf5.hpp"
-#include "common/run/history_group.hpp"
-#include "common/run/run_layout.hpp"
-#include "common/run/vtkhdf.hpp"
+#include "common/run/point_frames.hpp"
+#include "common/run/sealed_file.hpp"
 #include "common/stage/checksum.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
 namespace {
 
+constexpr h5::Format run_format{"talus-run", "a run of Talus"};
+
+/// A member of RunSummary and the attribute that holds it.
+template <class T>
+struct SummaryItem {
+  const char* name;
+  T RunSummary::*value;
+};
+
+constexpr SummaryItem<std::string> summary_texts[] = {
+    {"scene", &RunSummary::scene},         {"title", &RunSummary::title},     {"on", &RunSummary::on},
+    {"precision", &RunSummary::precision}, {"version", &RunSummary::version}, {"stop_reason", &RunSummary::stop_reason},
+    {"material", &RunSummary::material},   {"bed", &RunSummary::bed},
+};
+/// The attribute for RunSanity::words.
+constexpr const char* sanity_words = "sanity";
+constexpr SummaryItem<std::int64_t> summary_integers[] = {{"particles", &RunSummary::particles},
+                                                          {"particles_outflow", &RunSummary::particles_outflow},
+                                                          {"steps", &RunSummary::steps}};
+constexpr SummaryItem<double> summary_numbers[] = {
+    {"time_end_s", &RunSummary::time_end},
+    {"layer_height_m", &RunSummary::layer_height},
+    {"wall_time_s", &RunSummary::wall_time},
+    {"memory_bytes", &RunSummary::memory},
+    {"density_kg_m3", &RunSummary::density},
+    {"volume_released_m3", &RunSummary::volume_released},
+    {"volume_entrained_m3", &RunSummary::volume_entrained},
+    {"volume_final_m3", &RunSummary::volume_final},
+    {"volume_outflow_m3", &RunSummary::volume_outflow},
+};
+
+/// The list for RunSummary::release_density; only there where a run has releases.
+constexpr const char* release_density = "/release_density_kg_m3";
+
+constexpr const char* again = "Run talus-solve again";
+
 void write_maps(h5::File& file, const RunMaps& maps) {
   file.make_group("/maps");
   h5::write_grid(file, "/maps", maps.grid);
   file.set_number("/maps", "threshold_m", maps.threshold);
-  const h5::Dims shape{static_cast<hsize_t>(maps.grid.rows), static_cast<hsize_t>(maps.grid.columns)};
   const auto write = [&](const std::string& path, const std::vector<double>& values, const char* unit,
                          const char* meaning) {
-    file.write<double>(path, shape, values);
+    file.write<double>(path, h5::shape_of(maps.grid), values);
     file.set_text(path, "unit", unit);
     file.set_text(path, "long_name", meaning);
   };
@@ -48,20 +82,76 @@ void write_maps(h5::File& file, const RunMaps& maps) {
 }
 
 void write_summary(h5::File& file, const RunSummary& summary) {
-  for (const auto& item : run_layout::summary_texts) file.set_text("/", item.name, summary.*(item.value));
-  for (const auto& item : run_layout::summary_integers) file.set_integer("/", item.name, summary.*(item.value));
-  for (const auto& item : run_layout::summary_numbers) file.set_number("/", item.name, summary.*(item.value));
+  for (const auto& item : summary_texts) file.set_text("/", item.name, summary.*(item.value));
+  for (const auto& item : summary_integers) file.set_integer("/", item.name, summary.*(item.value));
+  for (const auto& item : summary_numbers) file.set_number("/", item.name, summary.*(item.value));
   for (const SanityNumber& number : sanity_numbers) file.set_number("/", number.name, summary.sanity.*(number.value));
-  file.set_text("/", run_layout::sanity_words, summary.sanity.words);
-  if (!summary.release_density.empty())
-    file.write<double>(run_layout::release_density, {summary.release_density.size()}, summary.release_density);
+  file.set_text("/", sanity_words, summary.sanity.words);
+  if (!summary.release_density.empty()) file.write_list<double>(release_density, summary.release_density);
   file.make_group("/profile");
-  for (const auto& [phase, seconds] : summary.profile) {
-    file.write<double>("/profile/" + phase, {1}, std::vector<double>{seconds});
-  }
+  for (const auto& [phase, seconds] : summary.profile) file.write_list<double>("/profile/" + phase, {&seconds, 1});
   h5::write_facts(file, "/provenance", summary.provenance);
   h5::write_text(file, "/places", places_json(summary.places));
   h5::write_findings(file, summary.findings);
+}
+
+/// One map, whose values are finite or none; of a quantity, such as a thickness, never negative.
+std::vector<double> read_map(const h5::File& file, const std::string& path, const MapGrid& grid, bool elevation) {
+  return file.read<double>(path, h5::shape_of(grid), elevation ? h5::finite_or_none : h5::not_negative_or_none);
+}
+
+RunMaps read_maps(const h5::File& file) {
+  RunMaps maps;
+  maps.grid = h5::read_grid(file, "/maps");
+  maps.threshold = h5::checked_number(file, "/maps", "threshold_m", h5::not_negative);
+  for (const MapField& field : map_fields) {
+    const auto path = std::string("/maps/") + field.name;
+    const bool elevation = field.values == &RunMaps::terrain || field.values == &RunMaps::before;
+    if (!field.optional || file.exists(path)) maps.*(field.values) = read_map(file, path, maps.grid, elevation);
+  }
+  for (std::size_t r = 0; file.exists("/maps/deposit_of/" + std::to_string(r)); ++r) {
+    const auto path = "/maps/deposit_of/" + std::to_string(r);
+    maps.deposit_of.emplace_back(file.text(path, "release"), read_map(file, path, maps.grid, false));
+  }
+  return maps;
+}
+
+RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
+  RunFrames frames;
+  if (!file.exists("/frames/time")) return frames;
+  frames.time = file.read_list<double>("/frames/time");
+  h5::check_growing(file, "/frames/time", frames.time, true);
+  auto shape = h5::shape_of(grid);
+  shape.insert(shape.begin(), frames.time.size());
+  const auto all = file.read<double>("/frames/thickness", shape, h5::not_negative_or_none);
+  for (std::size_t i = 0; i < frames.time.size(); ++i) {
+    const auto start = all.begin() + static_cast<std::ptrdiff_t>(i * grid.count());
+    frames.thickness.emplace_back(start, start + static_cast<std::ptrdiff_t>(grid.count()));
+  }
+  return frames;
+}
+
+RunSummary read_summary(const h5::File& file) {
+  RunSummary summary;
+  for (const auto& item : summary_texts) summary.*(item.value) = file.text("/", item.name);
+  for (const auto& item : summary_integers) {
+    summary.*(item.value) = file.integer("/", item.name);
+    if (summary.*(item.value) < 0)
+      file.refuse(fmt::format("attribute / {} is {}", item.name, summary.*(item.value)), "a count is not negative");
+  }
+  for (const auto& item : summary_numbers)
+    summary.*(item.value) = h5::checked_number(file, "/", item.name, h5::not_negative);
+  for (const SanityNumber& number : sanity_numbers) summary.sanity.*(number.value) = file.number("/", number.name);
+  summary.sanity.words = file.text("/", sanity_words);
+  if (file.exists(release_density)) summary.release_density = file.read_list<double>(release_density, h5::not_negative);
+  for (const auto& phase : file.children("/profile"))
+    summary.profile.emplace_back(phase, file.read<double>("/profile/" + phase, {1}, h5::not_negative).front());
+  summary.provenance = h5::read_facts(file, "/provenance");
+  summary.findings = h5::read_findings(file);
+  auto places = places_in(h5::read_text(file, "/places"));
+  if (!places) file.refuse("dataset /places holds no places", "it was edited or written by another program");
+  summary.places = std::move(*places);
+  return summary;
 }
 
 }  // namespace
@@ -75,7 +165,7 @@ struct RunWriter::Open {
 
   explicit Open(std::filesystem::path path)
       : pending(std::move(path)), file(h5::File::create(pending.path(), {pending.final_path(), ""})), points(file) {
-    h5::set_format(file, run_layout::format);
+    h5::set_format(file, run_format);
     file.make_group("/frames");
   }
 };
@@ -87,12 +177,10 @@ void RunWriter::append(const PointFrame& frame) { open_->points.append(frame); }
 
 void RunWriter::append_thickness(double time, const MapGrid& grid, const std::vector<double>& thickness) {
   if (!open_->frame_grid) open_->frame_grid = grid;
-  if (open_->frame_grid->columns != grid.columns || open_->frame_grid->rows != grid.rows) {
+  if (open_->frame_grid->columns != grid.columns || open_->frame_grid->rows != grid.rows)
     throw std::logic_error("RunWriter: thickness frames on different grids");
-  }
-  const h5::Dims shape{static_cast<hsize_t>(grid.rows), static_cast<hsize_t>(grid.columns)};
   open_->file.append<double>("/frames/time", 1, {}, std::span<const double>(&time, 1));
-  open_->file.append<double>("/frames/thickness", 1, shape, thickness);
+  open_->file.append<double>("/frames/thickness", 1, h5::shape_of(grid), thickness);
 }
 
 void RunWriter::finish(const RunMaps& maps, const RunHistory& history, const RunSummary& summary) {
@@ -103,6 +191,69 @@ void RunWriter::finish(const RunMaps& maps, const RunHistory& history, const Run
   open_->file.close();
   seal_file(open_->pending.path(), open_->pending.final_path());
   open_->pending.commit();
+}
+
+Run read_run(const std::filesystem::path& path) {
+  const h5::File file = h5::open_sealed(path, {path, again}, run_format);
+  Run run;
+  run.maps = read_maps(file);
+  run.frames = read_frames(file, run.maps.grid);
+  run.history = read_history(file);
+  run.summary = read_summary(file);
+  return run;
+}
+
+Facts run_facts(const std::filesystem::path& file) {
+  return h5::read_facts(h5::open_sealed(file, {file, again}), "/provenance");
+}
+
+const HistoryColumn* RunHistory::find(const std::string& name) const {
+  const auto found = std::ranges::find(columns, name, &HistoryColumn::name);
+  return found == columns.end() ? nullptr : &*found;
+}
+
+const HistoryColumn& RunHistory::at(const std::string& name) const {
+  if (const HistoryColumn* column = find(name)) return *column;
+  throw std::logic_error("RunHistory: no column " + name);
+}
+
+HistoryColumn& RunHistory::at(const std::string& name) {
+  return const_cast<HistoryColumn&>(std::as_const(*this).at(name));
+}
+
+void write_history(h5::File& file, const RunHistory& history) {
+  file.make_group("/history");
+  for (const HistoryColumn& column : history.columns) {
+    if (column.values.size() != history.columns[0].values.size())
+      throw std::logic_error("RunHistory: columns of different lengths");
+    const auto path = "/history/" + column.name;
+    file.write_list<double>(path, column.values);
+    file.set_text(path, "unit", column.unit);
+    if (!column.quantity.empty()) file.set_text(path, "quantity", column.quantity);
+    if (!column.place.empty()) file.set_text(path, "place", column.place);
+  }
+}
+
+RunHistory read_history(const h5::File& file) {
+  RunHistory history;
+  for (const auto& name : file.children("/history")) {
+    const auto path = "/history/" + name;
+    const h5::Dims dims{history.columns.empty() ? file.length(path) : history.columns[0].values.size()};
+    const auto word = [&](const char* attribute) {
+      return file.has_attribute(path, attribute) ? file.text(path, attribute) : std::string();
+    };
+    std::vector<double> values = file.read<double>(path, dims);
+    if (name == "time_s")
+      h5::check_growing(file, path, values, false);
+    else
+      h5::check_values<double>(file, path, values, h5::finite_or_none);
+    history.columns.push_back({.name = name,
+                               .unit = word("unit"),
+                               .quantity = word("quantity"),
+                               .place = word("place"),
+                               .values = std::move(values)});
+  }
+  return history;
 }
 
 }  // namespace talus

@@ -2,13 +2,101 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/run/sealed_file.hpp"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "common/stage/checksum.hpp"
-#include "common/stage/crash_report.hpp"
-#include "common/stage/write_fault.hpp"
+#include "common/stage/files.hpp"
+#include "common/stage/signals.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus::h5 {
+
+void write_grid(File& file, const std::string& group, const MapGrid& grid) {
+  file.set_integer(group, "columns", grid.columns);
+  file.set_integer(group, "rows", grid.rows);
+  file.set_number(group, "west_m", grid.west);
+  file.set_number(group, "south_m", grid.south);
+  file.set_number(group, "cell_m", grid.cell);
+  file.set_text(group, "crs_wkt", grid.crs_wkt);
+  file.set_text(group, "row_order", "row 0 is the southernmost");
+}
+
+MapGrid read_grid(const File& file, const std::string& group) {
+  const auto columns = file.integer(group, "columns"), rows = file.integer(group, "rows");
+  constexpr auto limit = std::numeric_limits<int>::max();
+  if (columns < 1 || rows < 1 || columns > limit || rows > limit)
+    file.refuse("holds an impossible map grid", fmt::format("of {} columns and {} rows", columns, rows));
+  constexpr Allowed a_cell{.low = std::numeric_limits<double>::min(), .why = "a cell has a size"};
+  return {.columns = static_cast<int>(columns),
+          .rows = static_cast<int>(rows),
+          .west = checked_number(file, group, "west_m", finite),
+          .south = checked_number(file, group, "south_m", finite),
+          .cell = checked_number(file, group, "cell_m", a_cell),
+          .crs_wkt = file.text(group, "crs_wkt")};
+}
+
+void write_facts(File& file, const std::string& group, const std::vector<std::pair<std::string, std::string>>& facts) {
+  file.make_group(group);
+  for (std::size_t i = 0; i < facts.size(); ++i) {
+    const auto one = fmt::format("{}/{:03}", group, i);
+    file.make_group(one);
+    file.set_text(one, "key", facts[i].first);
+    file.set_text(one, "value", facts[i].second);
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> read_facts(const File& file, const std::string& group) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (const auto& name : file.children(group)) {
+    const auto one = fmt::format("{}/{}", group, name);
+    facts.emplace_back(file.text(one, "key"), file.text(one, "value"));
+  }
+  return facts;
+}
+
+void write_text(File& file, const std::string& path, const std::string& text) {
+  file.write_list<std::uint8_t>(path, std::vector<std::uint8_t>(text.begin(), text.end()));
+}
+
+std::string read_text(const File& file, const std::string& path) {
+  const auto bytes = file.read_list<std::uint8_t>(path);
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_windows(File& file, const std::string& path, const std::vector<CellWindow>& windows) {
+  std::vector<std::int32_t> numbers;
+  for (const CellWindow& w : windows) numbers.insert(numbers.end(), {w.column, w.row, w.columns, w.rows});
+  file.write<std::int32_t>(path, {windows.size(), 4}, numbers);
+}
+
+std::vector<CellWindow> read_windows(const File& file, const std::string& path, std::size_t count) {
+  const auto numbers = file.read<std::int32_t>(path, {count, 4});
+  std::vector<CellWindow> windows;
+  for (std::size_t at = 0; at < numbers.size(); at += 4)
+    windows.push_back({numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]});
+  return windows;
+}
+
+void write_findings(File& file, const std::vector<Finding>& findings) {
+  write_text(file, "/findings", to_json(findings));
+}
+
+std::vector<Finding> read_findings(const File& file) {
+  auto findings = findings_in(read_text(file, "/findings"));
+  if (!findings) file.refuse("dataset /findings is no list of findings", "it was edited or written by another program");
+  return std::move(*findings);
+}
+
+void write_sealed(const std::filesystem::path& path, const std::function<void(File&)>& write, const std::string& mend) {
+  PendingFile pending(path);
+  File file = File::create(pending.path(), {path, mend});
+  write(file);
+  file.close();
+  seal_file(pending.path(), path);
+  pending.commit();
+}
 
 void set_format(File& file, const Format& format) {
   file.set_text("/", "format", format.mark);

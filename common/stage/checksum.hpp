@@ -31,22 +31,16 @@ class Sha256 {
   std::string digest();
 
  private:
-  struct Free {
-    void operator()(evp_md_ctx_st* context) const;
-  };
-  std::unique_ptr<evp_md_ctx_st, Free> context_;
+  std::shared_ptr<evp_md_ctx_st> context_;  // of this object alone
 };
 
-/// This function adds the seal to a file that is written and closed. It throws the DataError of a file that cannot be
-/// written, under the name `shown`.
+/// Adds the seal to a file that is written and closed. Throws DataError (not writable), which calls it `shown`.
 void seal_file(const std::filesystem::path& file, const std::filesystem::path& shown);
 
-/// A sealed file, open at its begin. Notes its checksum in the context, for checksum_as_read(). Throws as
-/// require_seal().
+/// A sealed file, open at its begin. Notes its checksum for checksum_as_read(). Throws as require_seal().
 std::ifstream open_sealed_stream(const std::filesystem::path& file, const std::string& mend);
 
-/// SHA-256 in hex of a sealed file as this context has read it last; of the file as it is where it was not read.
-/// Empty where it is no plain file.
+/// SHA-256 in hex of a sealed file as this context has read it last, else of the file as it is; empty: no plain file.
 std::string checksum_as_read(const std::filesystem::path& file);
 
 /// Whether a file is sealed. The function throws DataError with `mend` where the seal is that of other bytes, or where

@@ -3,21 +3,74 @@
 #include "common/stage/context.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <utility>
 
-#include "common/stage/interrupt.hpp"
-#include "common/stage/output_lock.hpp"
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "common/stage/files.hpp"
+#include "common/stage/findings.hpp"
+#include "common/stage/signals.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus {
 namespace {
 
 thread_local Context* bound_here = nullptr;
 
+bool line_on_terminal = false;  // a progress line stands on the terminal, without its newline
+
 /// Control characters may stand in names of files, and a terminal would obey them.
 std::string without_control_characters(std::string text) {
   for (char& c : text)
     if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f) c = '?';
   return text;
+}
+
+/// Lines on stderr, one at a time from all threads. What a context lets through is written whatever spdlog's level.
+spdlog::logger& stderr_logger() {
+  static const auto instance = [] {
+    auto made = std::make_shared<spdlog::logger>("talus", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    made->set_pattern("%v");
+    made->set_level(spdlog::level::trace);
+    return made;
+  }();
+  return *instance;
+}
+
+void write_to_stderr(LogLevel level, const std::string& text) {
+  clear_progress_line();
+  const char* prefix = level == LogLevel::warning ? "warning: " : level == LogLevel::advice ? "advice: " : "";
+  stderr_logger().log(level == LogLevel::error ? spdlog::level::err : spdlog::level::info, prefix + text);
+}
+
+void log_unless_kept_back(LogLevel level, const std::string& text) {
+  if (!log_is_kept_back()) context().log(level, text);
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1u : 79u;
+}
+
+/// Between two lines where no terminal redraws them [s]: TALUS_PROGRESS_S of programs that show progress, or 10.
+double between_lines() {
+  const char* const text = std::getenv("TALUS_PROGRESS_S");
+  if (text == nullptr || *text == '\0') return 10;
+  char* end = nullptr;
+  const double seconds = std::strtod(text, &end);
+  if (*end == '\0' && std::isfinite(seconds) && seconds > 0) return seconds;
+  static const bool said = [text] {
+    log_warning("TALUS_PROGRESS_S = " + std::string(text) + " is no time in seconds; progress is said every 10 s");
+    return true;
+  }();
+  return said ? 10 : 0;
 }
 
 }  // namespace
@@ -81,6 +134,51 @@ bool Context::has_locked(const std::filesystem::path& folder) const {
 bool Context::holds_a_lock() const {
   const std::lock_guard lock(mutex_);
   return std::any_of(locks_.begin(), locks_.end(), [](const Lock& one) { return one.held; });
+}
+
+void log_info(const std::string& text) { log_unless_kept_back(LogLevel::info, text); }
+void log_advice(const std::string& text) { log_unless_kept_back(LogLevel::advice, text); }
+void log_warning(const std::string& text) { log_unless_kept_back(LogLevel::warning, text); }
+void log_detail(const std::string& text) { log_unless_kept_back(LogLevel::detail, text); }
+void log_error(const std::string& text) { context().log(LogLevel::error, text); }
+
+void clear_progress_line() {
+  if (!line_on_terminal) return;
+  std::fputs("\r\033[K", stderr);
+  line_on_terminal = false;
+}
+
+Progress::Progress()
+    : terminal_(context().logs_to_stderr() && ::isatty(STDERR_FILENO) == 1),
+      quiet_(context().logs_to_stderr() && context().verbosity == Verbosity::quiet) {
+  last_ = std::chrono::steady_clock::now();
+}
+
+Progress::~Progress() {
+  if (!drawn_ || !line_on_terminal) return;
+  std::fputc('\n', stderr);
+  line_on_terminal = false;
+}
+
+bool Progress::due() const {
+  using namespace std::chrono_literals;
+  const auto since = std::chrono::steady_clock::now() - last_;
+  return !quiet_ && (terminal_ ? since >= 200ms : since >= std::chrono::duration<double>(between_lines()));
+}
+
+void Progress::update(const std::string& text) {
+  if (quiet_) return;
+  last_ = std::chrono::steady_clock::now();
+  if (terminal_) {
+    std::fprintf(stderr, "\r%s\033[K",
+                 text.substr(0, terminal_width()).c_str());  // a wrapped line could not be redrawn
+    line_on_terminal = drawn_ = true;
+  } else if (!context().logs_to_stderr()) {
+    return context().log(LogLevel::progress, text);
+  } else {
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+  std::fflush(stderr);
 }
 
 }  // namespace talus

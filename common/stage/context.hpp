@@ -6,11 +6,11 @@
 // (log_info(), thread_limit(), interrupted(), ...) use the context of the calling thread. Two contexts in one process
 // are independent of each other. They share what a process has once:
 // - handlers of SIGINT, SIGTERM, SIGHUP and SIGALRM with their flag, and the names of partial files that a handler
-//   removes (interrupt.cpp). Only watch_for_interrupts() installs handlers.
+//   removes (signals.cpp). Only watch_for_interrupts() installs handlers.
 // - the number of threads that oneTBB, OpenMP and OpenBLAS use (common/domain/threads.cpp); the state of CUDA.
 // - drivers and settings of GDAL, PROJ, HDF5 and OpenVDB, made at their first use.
-// - environment variables, the current folder, the progress line on the terminal (progress.cpp), and the word of this
-//   process in names of partial files with the count of its locks (output_lock.cpp).
+// - environment variables, the current folder, the progress line on the terminal (context.cpp), and the word of this
+//   process in names of partial files with the count of its locks (files.cpp).
 // - the handler of crashes while a library reads a file: after report_crashes() in main().
 // - the context of threads to which none is bound, such as those of oneTBB.
 #pragma once
@@ -23,10 +23,12 @@
 #include <string>
 #include <vector>
 
-#include "common/recipe/shown_paths.hpp"
-#include "common/stage/console.hpp"
+#include "common/recipe/paths.hpp"
 
 namespace talus {
+
+/// How much is said on stderr.
+enum class Verbosity { quiet, normal, verbose };
 
 /// The kind of a line of the log. `progress` is a line that replaces the one before.
 enum class LogLevel { detail, progress, info, advice, warning, error };
@@ -47,8 +49,7 @@ class Context {
   int threads = 0;                          ///< to use at most; 0: usable_threads()
   bool network = false;                     ///< inputs may name places on a network
 
-  /// Asks the computations of this context to stop, as Ctrl-C does: they save what they save, and throw Interrupted.
-  /// Any thread may call the method.
+  /// Asks the computations of this context, from any thread, to stop as Ctrl-C does: they save, and throw Interrupted.
   void interrupt() { interrupted_ = true; }
   bool is_interrupted() const;
   /// Whether signals of the process interrupt this context: after watch_for_interrupts() in it.
@@ -60,8 +61,7 @@ class Context {
   /// Whether lines go to stderr, where a terminal may be.
   bool logs_to_stderr() const { return !redirect_ && !sink_; }
 
-  /// Names of paths in the log and in the report.
-  ShownPaths& paths() { return *paths_; }
+  ShownPaths& paths() { return *paths_; }  ///< names of paths in the log and in the report
 
   /// SHA-256 of files as they were read; empty where a file was not.
   void note_checksum(const std::filesystem::path& file, std::string digest);
@@ -70,7 +70,6 @@ class Context {
   /// Output folders that this context has locked. `held`: the file system knows locks.
   void add_lock(const std::filesystem::path& file, bool held);
   void remove_lock(const std::filesystem::path& file);
-  /// Whether the context has locked this folder as a whole.
   bool has_locked(const std::filesystem::path& folder) const;
   bool holds_a_lock() const;
 
@@ -95,6 +94,12 @@ class Context {
 /// The context of the calling thread.
 Context& context();
 
+/// Take a drawn progress line off the terminal, so that the next output starts on a clean line.
+void clear_progress_line();
+
+/// An error line on stderr, shown even under -q.
+void log_error(const std::string& text);
+
 /// Binds a context to the calling thread while the object lives.
 class BindContext {
  public:
@@ -108,8 +113,7 @@ class BindContext {
   BindShownPaths paths_;
 };
 
-/// While the object lives, `sink` gets all lines of the calling thread's context, whatever its verbosity; details only
-/// where it is verbose.
+/// While the object lives, `sink` gets all lines of the calling thread's context; details only where it is verbose.
 class RedirectLog {
  public:
   explicit RedirectLog(LogSink sink);

@@ -8,9 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <utility>
 
-#include "common/recipe/shown_paths.hpp"
+#include "common/recipe/paths.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -22,19 +21,10 @@ constexpr const char* severities[] = {"advice", "warning", "refusal"};
 
 thread_local Findings* innermost = nullptr;
 
-std::optional<Severity> severity_called(const std::string& word) {
-  const auto* const found = std::find(std::begin(severities), std::end(severities), word);
-  if (found == std::end(severities)) return std::nullopt;
-  return static_cast<Severity>(found - std::begin(severities));
-}
-
 void log_finding(const Finding& finding) {
-  if (finding.severity == Severity::advice)
-    log_advice(finding.message);
-  else if (finding.severity == Severity::refusal)
-    log_warning(fmt::format("accepted, \"{}\": {}", finding.name, finding.message));
-  else
-    log_warning(finding.message);
+  if (finding.severity == Severity::advice) return log_advice(finding.message);
+  const bool accepted = finding.severity == Severity::refusal;
+  log_warning((accepted ? fmt::format("accepted, \"{}\": ", finding.name) : "") + finding.message);
 }
 
 Json json_of(const Finding& f) {
@@ -51,9 +41,10 @@ Json json_of(const Finding& f) {
 
 /// None, or an exception of the library, where the JSON is of something else.
 std::optional<Finding> finding_of(const Json& json) {
-  const auto severity = severity_called(json.at("severity").get<std::string>());
-  if (!severity) return std::nullopt;
-  Finding f{*severity, json.at("name").get<std::string>(), json.at("message").get<std::string>()};
+  const auto* const severity = std::ranges::find(severities, json.at("severity").get<std::string>());
+  if (severity == std::end(severities)) return std::nullopt;
+  Finding f{static_cast<Severity>(severity - severities), json.at("name").get<std::string>(),
+            json.at("message").get<std::string>()};
   for (const auto& [name, number] : json.at("numbers").items()) {
     const Json& value = number.at("value");
     f.numbers.push_back({name, value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>(),

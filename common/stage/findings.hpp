@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/error.hpp"
@@ -51,12 +50,9 @@ class Findings {
   Findings(const Findings&) = delete;
   Findings& operator=(const Findings&) = delete;
 
-  /// The findings so far, in order.
-  const std::vector<Finding>& list() const { return list_; }
-  /// Throws one DataError of all refusals that the recipe does not override.
-  void settle();
-  /// Runs `work`, then settle(). Where a DataError ends the work, refusals stand in front of its faults: they may be
-  /// the reason.
+  const std::vector<Finding>& list() const { return list_; }  ///< the findings so far, in order
+  void settle();  ///< throws one DataError of all refusals that the recipe does not override
+  /// Runs `work`, then settle(). Refusals stand in front of the faults of a DataError that ends it: they may be why.
   template <class Work>
   void settled(const Work& work) {
     try {
@@ -74,8 +70,7 @@ class Findings {
   friend std::vector<Finding> findings_so_far();
   friend bool log_is_kept_back();
 
-  /// Adds to the lists of the thread.
-  static void keep(const Finding& finding, bool logged);
+  static void keep(const Finding& finding, bool logged);  ///< adds to the lists of the thread
 
   std::string stage_;
   std::vector<std::string> accept_;

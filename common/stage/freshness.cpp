@@ -1,21 +1,22 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/stage/freshness.hpp"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
+// What the used recipe of a stage says, and whether its results are up to date by it and by no time of a file.
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
 #include <string_view>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "common/recipe/recipe.hpp"
 #include "common/recipe/used.hpp"
 #include "common/stage/checksum.hpp"
 #include "common/stage/context.hpp"
-#include "common/stage/input_file.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
+#include "common/whole_text.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -36,14 +37,21 @@ std::string table_of_head(std::string_view line) {
 std::map<std::string, std::string> tables_in(const std::string& toml) {
   std::map<std::string, std::string> tables;
   std::string name;
-  for (std::size_t at = 0; at < toml.size();) {
-    const auto end = std::min(toml.find('\n', at), toml.size());
-    const std::string_view line = std::string_view(toml).substr(at, end - at);
-    at = end + 1;
+  for (const std::string& line : lines_in(toml)) {
     if (const std::string head = table_of_head(line); !head.empty()) name = head;
-    if (!line.empty()) tables[name] += std::string(line) + "\n";
+    if (!line.empty()) tables[name] += line + "\n";
   }
   return tables;
+}
+
+bool names(const auto& pairs, const auto& name) {
+  return std::ranges::any_of(pairs, [&](const auto& one) { return one.first == name; });
+}
+
+/// [scene] and a stage's table as a recipe of their own. `options_toml` is the table.
+std::string own_recipe(const recipe::Recipe& recipe, const std::string& options_toml) {
+  return fmt::format("[scene]\nname = {}\ntitle = {}\n\n{}", recipe::toml_text(recipe.scene_name()),
+                     recipe::toml_text(recipe.title()), options_toml);
 }
 
 std::string fresh_recipe(const Stage& stage, const StageContext& context) {
@@ -53,6 +61,34 @@ std::string fresh_recipe(const Stage& stage, const StageContext& context) {
 std::string checksum_of(const fs::path& file) {
   std::error_code unknown;
   return fs::is_regular_file(file, unknown) ? sha256(file) : "";
+}
+
+/// "OUT/solve.used.toml", of a part "OUT/solve.0-250.used.toml".
+fs::path used_recipe_file(const Stage& stage, const StageContext& context) {
+  return context.out / (stage.table + (context.part.empty() ? "" : "." + context.part) + ".used.toml");
+}
+
+/// The line of a used recipe for a fact, "# name: value"; a value with line breaks stays in its comment.
+std::string fact_line(const std::string& name, std::string value) {
+  std::ranges::replace_if(
+      value, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return fmt::format("# {}: {}\n", name, value);
+}
+
+/// The line of a used recipe for a file; with the checksum as it was read where none is given.
+std::string input_line(const std::string& name, const fs::path& file, const std::optional<std::string>& noted = {}) {
+  const std::string checksum = noted ? *noted : checksum_as_read(file);
+  const std::string end = checksum.empty() ? std::string(no_checksum) : fmt::format("{}{}", checksum_mark, checksum);
+  return fact_line(name, file.string() + end);
+}
+
+/// The lines of a used recipe that say what its results are made of.
+std::string lines_of(const Ingredients& ingredients) {
+  std::string text;
+  for (const auto& [name, checksum] : ingredients.tables)
+    text += fact_line("table", fmt::format("{}{}{}", name, checksum_mark, checksum));
+  for (const auto& [file, checksum] : ingredients.inputs) text += input_line("input", file, checksum);
+  return text;
 }
 
 /// The part of a fact behind a mark, and the part before it.
@@ -145,17 +181,13 @@ std::string changed_tables(const Record& record, const std::string& fresh) {
 
 /// Why the inputs are others; empty where they are not. Inputs that are not there go into `missing`.
 std::string changed_inputs(const Record& record, const Dependencies& expected, std::vector<std::string>& missing) {
-  for (const auto& [file, checksum] : record.inputs) {
+  for (const auto& [file, checksum] : record.inputs)
     if (!fs::exists(file))
       missing.push_back(file.string());
     else if (!checksum.empty() && checksum_of(file) != checksum)
       return file.string() + " has changed";
-  }
-  for (const fs::path& file : expected.inputs) {
-    const auto noted = [&](const auto& one) { return one.first == file; };
-    if (fs::exists(file) && std::none_of(record.inputs.begin(), record.inputs.end(), noted))
-      return file.string() + " is new";
-  }
+  for (const fs::path& file : expected.inputs)
+    if (fs::exists(file) && !names(record.inputs, file)) return file.string() + " is new";
   return "";
 }
 
@@ -183,8 +215,7 @@ std::string missing_results(const Record* record, const Dependencies& expected, 
     if (!fs::exists(file)) return fmt::format("there is no {}", file.lexically_relative(out).string());
   for (const fs::path& file : expected.results) {
     const fs::path name = file.lexically_relative(out);
-    const auto noted = [&](const auto& one) { return one.first == name; };
-    if (record == nullptr || std::none_of(record->results.begin(), record->results.end(), noted))
+    if (record == nullptr || !names(record->results, name))
       return fmt::format("{} does not say what {} was made of", used_name, name.string());
   }
   return "";
@@ -207,10 +238,7 @@ std::string without_record(const std::string& head, const Ingredients& ingredien
   std::set<std::string> own;
   for (const auto& [file, checksum] : ingredients.inputs) own.insert(file.string());
   std::string kept;
-  for (std::size_t at = 0; at < head.size();) {
-    const auto end = std::min(head.find('\n', at), head.size());
-    const std::string line = head.substr(at, end - at);
-    at = end + 1;
+  for (const std::string& line : lines_in(head)) {
     const bool noted =
         line.starts_with("# table: ") || line.starts_with("# result: ") || line.starts_with("# resolved: ");
     constexpr std::string_view input = "# input: ";
@@ -225,13 +253,13 @@ std::string without_record(const std::string& head, const Ingredients& ingredien
 std::vector<std::string> result_names(const Stage& stage, const StageContext& context) {
   std::vector<fs::path> files = stage.depends(context).results;
   files.insert(files.end(), context.results.begin(), context.results.end());
-  std::vector<std::string> names;
+  std::vector<std::string> found;
   for (const fs::path& file : files) {
     const std::string name = file.lexically_relative(context.out).string();
-    const bool known = std::find(names.begin(), names.end(), name) != names.end();
-    if (!known && file != used_recipe_file(stage, context) && fs::exists(file)) names.push_back(name);
+    const bool known = std::ranges::find(found, name) != found.end();
+    if (!known && file != used_recipe_file(stage, context) && fs::exists(file)) found.push_back(name);
   }
-  return names;
+  return found;
 }
 
 }  // namespace
@@ -242,37 +270,12 @@ Ingredients ingredients_of(const Stage& stage, const StageContext& context) {
     made.tables.emplace_back(name, sha256_of_text(text));
   const Dependencies depends = stage.depends(context);
   for (const fs::path& file : depends.inputs) {
-    const auto known = [&](const auto& one) { return one.first == file; };
-    if (!fs::exists(file) || std::any_of(made.inputs.begin(), made.inputs.end(), known)) continue;
-    const bool is_sealed = std::find(depends.sealed.begin(), depends.sealed.end(), file) != depends.sealed.end();
+    if (!fs::exists(file) || names(made.inputs, file)) continue;
+    const bool is_sealed = std::ranges::find(depends.sealed, file) != depends.sealed.end();
     made.inputs.emplace_back(file, is_sealed ? std::nullopt : std::optional(checksum_of(file)));
     if (is_sealed) talus::context().note_checksum(file, "");  // not read yet
   }
   return made;
-}
-
-std::string fact_line(const std::string& name, std::string value) {
-  std::replace_if(
-      value.begin(), value.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return fmt::format("# {}: {}\n", name, value);
-}
-
-std::string input_line(const std::string& name, const fs::path& file, const std::optional<std::string>& noted) {
-  const std::string checksum = noted ? *noted : checksum_as_read(file);
-  const std::string end = checksum.empty() ? std::string(no_checksum) : fmt::format("{}{}", checksum_mark, checksum);
-  return fact_line(name, file.string() + end);
-}
-
-std::string lines_of(const Ingredients& ingredients) {
-  std::string text;
-  for (const auto& [name, checksum] : ingredients.tables)
-    text += fact_line("table", fmt::format("{}{}{}", name, checksum_mark, checksum));
-  for (const auto& [file, checksum] : ingredients.inputs) text += input_line("input", file, checksum);
-  return text;
-}
-
-fs::path used_recipe_file(const Stage& stage, const StageContext& context) {
-  return context.out / (stage.table + (context.part.empty() ? "" : "." + context.part) + ".used.toml");
 }
 
 void note_results(const Stage& stage, const StageContext& context) {
@@ -310,13 +313,38 @@ Verdict judge_freshness(const Stage& stage, const StageContext& context) {
   if (!why.empty()) return {why};
   Verdict verdict{.results = expected.results};  // those of this call first
   for (const auto& [result, id] : record->results)
-    if (std::find(verdict.results.begin(), verdict.results.end(), context.out / result) == verdict.results.end())
+    if (std::ranges::find(verdict.results, context.out / result) == verdict.results.end())
       verdict.results.push_back(context.out / result);
   verdict.results.push_back(file);
   if (!missing.empty())
     verdict.remark = fmt::format("{}: recipe unchanged; inputs are missing and could not be checked: {}",
                                  expected.results.front().filename().string(), fmt::join(missing, ", "));
   return verdict;
+}
+
+std::string used_recipe(const StageContext& context, const Stage& stage, const std::string& options_toml,
+                        const std::vector<std::filesystem::path>& inputs,
+                        const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::string text = "# What was used, defaults filled in. This file is itself a recipe.\n";
+  text += fact_line("program", stage.name + " " + version());
+  text += fact_line("command", context.command_line);
+  text += input_line("recipe", context.recipe.file());
+  for (const std::string& value : context.recipe.overrides()) text += fact_line("set", value);
+  text += lines_of(context.made_of);
+  for (const auto& input : inputs)
+    if (!input.empty() && !names(context.made_of.inputs, input)) text += input_line("input", input);
+  if (!names(facts, "hardware")) text += fact_line("hardware", hardware());
+  for (const auto& [name, value] : facts) text += fact_line(name, value);
+  return text + "\n" + own_recipe(context.recipe, options_toml);
+}
+
+void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,
+                       const std::vector<std::filesystem::path>& inputs,
+                       const std::vector<std::pair<std::string, std::string>>& facts) {
+  const auto text = used_recipe(context, stage, options_toml, inputs, facts);
+  const auto path = used_recipe_file(stage, context);
+  write_text(path, text);
+  context.results.push_back(path);
 }
 
 }  // namespace talus

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <random>
 
 #include <fmt/format.h>
 
+#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
-#include "common/stage/output_lock.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -26,7 +25,7 @@ std::string recipe_mark(const recipe::Recipe& recipe, const std::string& table) 
 }
 
 std::string fact(const Facts& facts, const std::string& name) {
-  const auto found = std::find_if(facts.begin(), facts.end(), [&](const auto& one) { return one.first == name; });
+  const auto found = std::ranges::find(facts, name, &Facts::value_type::first);
   return found == facts.end() ? "" : found->second;
 }
 

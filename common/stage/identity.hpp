@@ -28,8 +28,7 @@ inline constexpr std::size_t mark_digits = 16;
 /// An id that no other run has: 16 hexadecimal digits.
 std::string new_run_id();
 
-/// The mark of a recipe's table: the first digits of the SHA-256 of Recipe::canonical(). A table that is not there says
-/// what an empty one says.
+/// The mark of a recipe's table: first digits of the SHA-256 of Recipe::canonical(); a missing table counts as empty.
 std::string recipe_mark(const recipe::Recipe& recipe, const std::string& table);
 
 /// The value of a fact; empty where there is none.

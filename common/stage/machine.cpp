@@ -2,21 +2,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/stage/machine.hpp"
 
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <thread>
+#include <vector>
+
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <optional>
-#include <sstream>
-#include <thread>
-
 #include "common/error.hpp"
 #include "common/stage/context.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -60,12 +65,11 @@ std::vector<Group> groups_of(const std::string& controller) {
 template <class LimitIn>
 double least_limit(const std::string& controller, const LimitIn& limit_in) {
   double least = unlimited;
-  for (const Group& group : groups_of(controller)) {
+  for (const Group& group : groups_of(controller))
     for (fs::path path = group.path;; path = path.parent_path()) {
       least = std::min(least, limit_in(group.mount / path));
       if (path.empty()) break;
     }
-  }
   return least;
 }
 
@@ -92,6 +96,54 @@ std::string size_words(double bytes) {
   return bytes < 1e12 ? fmt::format("{:.3g} GB", bytes * 1e-9) : fmt::format("{:.3g} TB", bytes * 1e-12);
 }
 
+/// The pieces of work while threads take them.
+class Shared {
+ public:
+  Shared(std::size_t count, const std::function<void(std::size_t)>& work)
+      : count_(count), work_(work), place_of_failure_(count) {}
+
+  void take_all() {
+    while (!interrupted() && !failed_) {
+      const std::size_t place = next_++;
+      if (place >= count_) return;
+      try {
+        work_(place);
+        ++done_;
+      } catch (...) {
+        note_failure(place);
+      }
+    }
+  }
+  bool all_done() const { return done_ == count_; }
+  std::exception_ptr failure() const { return failure_; }
+
+ private:
+  void note_failure(std::size_t place) {
+    const std::lock_guard lock(mutex_);
+    failed_ = true;
+    if (place >= place_of_failure_) return;
+    place_of_failure_ = place;
+    failure_ = std::current_exception();
+  }
+
+  std::size_t count_;
+  const std::function<void(std::size_t)>& work_;
+  std::atomic<std::size_t> next_{0}, done_{0};
+  std::atomic<bool> failed_{false};
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+  std::size_t place_of_failure_;
+};
+
+std::string processor_name() {
+  std::ifstream stream("/proc/cpuinfo");
+  for (std::string line; std::getline(stream, line);) {
+    const auto colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown processor";  // /proc/cpuinfo has no model name on some ARM systems
+}
+
 }  // namespace
 
 int usable_threads() {
@@ -103,8 +155,6 @@ int usable_threads() {
 }
 
 int thread_limit() { return context().threads > 0 ? context().threads : usable_threads(); }
-
-void set_thread_limit(int threads) { context().threads = threads; }
 
 double memory_of_machine(std::string_view name) {
   std::ifstream stream("/proc/meminfo");
@@ -127,6 +177,31 @@ void require_memory(double bytes, const std::string& what, const std::string& me
   if (bytes <= limit) return;
   throw DataError(
       Fault{what, fmt::format("{} are needed, this process may have {}", size_words(bytes), size_words(limit)), mend});
+}
+
+void in_threads(std::size_t count, const std::string& doing, const std::function<void(std::size_t place)>& work,
+                std::size_t most) {
+  const std::size_t wanted = std::min({count, most, static_cast<std::size_t>(std::max(1, thread_limit()))});
+  Shared shared(count, work);
+  {
+    std::vector<std::jthread> others;
+    try {
+      while (others.size() + 1 < wanted)
+        others.emplace_back([&, &here = context()] {
+          const BindContext bind(here);
+          shared.take_all();
+        });
+    } catch (const std::system_error&) {  // the system gives no more threads: those that there are do the work
+    }
+    shared.take_all();
+  }
+  if (shared.failure()) std::rethrow_exception(shared.failure());
+  if (!shared.all_done()) stop_if_interrupted(doing);
+}
+
+std::string hardware() {
+  const int threads = thread_limit();
+  return fmt::format("{}, {} thread{}", processor_name(), threads, threads == 1 ? "" : "s");
 }
 
 }  // namespace talus

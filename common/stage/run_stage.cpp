@@ -1,33 +1,155 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <deque>
 #include <ios>
 #include <new>
 #include <optional>
 #include <system_error>
 
-#include "common/recipe/shown_paths.hpp"
-#include "common/stage/command_line.hpp"
-#include "common/stage/console.hpp"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include "common/recipe/paths.hpp"
 #include "common/stage/context.hpp"
-#include "common/stage/crash_report.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
-#include "common/stage/interrupt.hpp"
-#include "common/stage/output_lock.hpp"
+#include "common/stage/machine.hpp"
+#include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void refuse_output_folder(const fs::path& folder, const std::string& reason) {
-  throw DataError(
-      {folder.string() + ": the output folder cannot be written to", reason, "Name another one with --out DIR"});
+constexpr int most_threads = 4096;
+
+struct CommandLine {
+  StageCall call;      ///< its recipe is empty where none was given
+  std::string answer;  ///< text for stdout that --help or --version asks for
+  bool print_template = false;
+  bool network = false;  ///< inputs may name places on a network
+  int threads = 0;       ///< to take at most; 0: as many as this process may run at once
+  Verbosity verbosity = Verbosity::normal;
+};
+
+/// A flag of the stage's own on the command line.
+struct Own {
+  Flag flag;
+  CLI::Option* option = nullptr;
+  std::string value = {};
+
+  bool may_go_without_value() const { return flag.value.starts_with('['); }
+};
+
+struct Words {
+  std::string recipe, out;
+  bool verbose = false, quiet = false, version = false;
+  std::deque<Own> own = {};  // CLI11 keeps pointers to the values
+};
+
+/// Every stage takes --on, so that one command line serves all; stages that run no kernels pass it over.
+Flag unheeded_on() {
+  return {.name = "--on",
+          .help = "This stage runs on the CPU whatever is asked",
+          .choices = {"auto", "cpu", "gpu"},
+          .set = [](const std::string&) {}};
+}
+
+std::vector<Flag> own_flags(const Stage& stage) {
+  std::vector<Flag> flags = stage.flags;
+  if (std::ranges::find(flags, "--on", &Flag::name) == flags.end()) flags.insert(flags.begin(), unheeded_on());
+  return flags;
+}
+
+/// "auto|cpu|gpu", "[FILE]", or nothing.
+std::string shown_value(const Flag& flag) {
+  return flag.choices.empty() ? flag.value : fmt::format("{}", fmt::join(flag.choices, "|"));
+}
+
+void declare(CLI::App& app, Own& own) {
+  const Flag& flag = own.flag;
+  if (shown_value(flag).empty()) {
+    own.option = app.add_flag(flag.name, flag.help);
+    return;
+  }
+  own.option = app.add_option(flag.name, own.value, flag.help)->type_name(shown_value(flag));
+  if (!flag.choices.empty()) own.option->check(CLI::IsMember(flag.choices).description(""));
+  if (own.may_go_without_value()) own.option->expected(0, 1);
+}
+
+void declare(CLI::App& app, const Stage& stage, CommandLine& line, Words& words) {
+  app.add_option("recipe", words.recipe, "The scene's recipe (TOML)")->type_name("recipe.toml");
+  app.add_option("--out", words.out, "Folder for the results, made if missing (default: out, beside the recipe)")
+      ->type_name("DIR");
+  app.add_option("--set", line.call.set,
+                 "A value that takes the place of the recipe's (solve.end_time_s=60); may be given many times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_flag("--check", line.call.check_only, "Read and test everything cheap; compute and write nothing");
+  app.add_flag("--if-outdated", line.call.if_outdated, "Do nothing but print the results where they are up to date");
+  app.add_flag("--template", line.print_template,
+               "Print this stage's recipe table with every key, its default and its meaning");
+  app.add_option("--threads", line.threads,
+                 fmt::format("Threads to take at most (default: as many as this process may run at once, {} here)",
+                             usable_threads()))
+      ->type_name("N")
+      ->check(CLI::Range(1, most_threads).description(""));
+  app.add_flag("--network", line.network, "Let inputs name places on a network and databases, which GDAL then opens");
+  for (Flag& flag : own_flags(stage)) declare(app, words.own.emplace_back(Own{std::move(flag)}));
+  auto* verbose = app.add_flag("-v,--verbose", words.verbose, "Say more");
+  app.add_flag("-q,--quiet", words.quiet, "Say nothing but errors")->excludes(verbose);
+  app.add_flag("--version", words.version, "Print the version and its commit");
+}
+
+/// `--restart recipe.toml` without another word: the recipe was meant, not the value that --restart may go without.
+void return_recipe(Words& words) {
+  for (Own& own : words.own)
+    if (words.recipe.empty() && own.may_go_without_value() && own.value.ends_with(".toml"))
+      std::swap(words.recipe, own.value);
+}
+
+/// "Usage: talus-solve recipe.toml [--out DIR] ..."
+std::string usage(const Stage& stage) {
+  std::string own;
+  for (const Flag& flag : own_flags(stage)) {
+    const std::string value = shown_value(flag);
+    own += fmt::format(" [{}{}{}]", flag.name, value.empty() ? "" : " ", value);
+  }
+  return fmt::format(
+      "Usage: {} recipe.toml [--out DIR] [--set KEY=VALUE] [--check] [--template] [--threads N]{} [-v|-q] (all of it: "
+      "{} --help)",
+      stage.name, own, stage.name);
+}
+
+/// Reads the options that every stage has, and those of stage.flags. Throws RecipeError when one is unknown or wrong.
+CommandLine parse_command_line(int argc, char** argv, const Stage& stage) {
+  CommandLine line;
+  Words words;
+  CLI::App app(stage.summary, stage.name);
+  declare(app, stage, line, words);
+  app.footer((stage.examples.empty() ? "" : "Examples:\n" + stage.examples + "\n\n") + exit_codes);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    line.answer = app.help();
+    return line;
+  } catch (const CLI::ParseError& error) {
+    throw RecipeError(Fault{error.what(), "", usage(stage)});
+  }
+  if (words.version) line.answer = stage.name + " " + version() + "\n";
+  return_recipe(words);
+  for (const Own& own : words.own)
+    if (own.option->count() > 0) line.call.flags.emplace_back(own.flag.name, own.value);
+  line.call.recipe = words.recipe;
+  line.call.out = words.out;
+  if (words.quiet) line.verbosity = Verbosity::quiet;
+  if (words.verbose) line.verbosity = Verbosity::verbose;
+  return line;
 }
 
 /// --check writes nothing, so it asks for the permissions of the nearest folder that is there.
@@ -35,8 +157,7 @@ void check_output_folder(const fs::path& folder) {
   fs::path nearest = folder;
   while (!fs::exists(nearest) && nearest.has_relative_path()) nearest = nearest.parent_path();
   errno = fs::is_directory(nearest) ? 0 : ENOTDIR;
-  if (errno != 0 || ::access(nearest.c_str(), W_OK | X_OK) != 0)
-    refuse_output_folder(folder, std::generic_category().message(errno));
+  if (errno != 0 || ::access(nearest.c_str(), W_OK | X_OK) != 0) refuse_output_folder(folder, reason_of(errno));
 }
 
 void make_output_folder(const fs::path& folder) {
@@ -47,8 +168,7 @@ void make_output_folder(const fs::path& folder) {
 
 /// The flag of a stage by its name; null where it has none of it (--on of a stage without kernels).
 const Flag* flag_called(const Stage& stage, const std::string& name) {
-  const auto found =
-      std::find_if(stage.flags.begin(), stage.flags.end(), [&](const Flag& f) { return f.name == name; });
+  const auto found = std::ranges::find(stage.flags, name, &Flag::name);
   return found == stage.flags.end() ? nullptr : &*found;
 }
 
@@ -59,7 +179,16 @@ bool writes_nothing(const Stage& stage, const StageCall& call) {
          });
 }
 
-/// The call as a command line.
+/// Words as a shell takes them.
+std::string command_text(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    const bool quote = word.empty() || word.find_first_of(" \t\n'\"$*?;&|<>()") != std::string::npos;
+    text += (text.empty() ? "" : " ") + (quote ? "'" + word + "'" : word);
+  }
+  return text;
+}
+
 std::string command_of(const Stage& stage, const StageCall& call) {
   std::vector<std::string> words{stage.name, call.recipe.string()};
   if (!call.out.empty()) words.insert(words.end(), {"--out", call.out.string()});
@@ -132,9 +261,8 @@ void print_template(const Stage& stage) {
 
 /// What a command line asks for, in the calling thread's context.
 StageOutcome run_words(int argc, char** argv, const Stage& stage) {
-  auto parsed = parse_command_line(argc, argv, stage);
-  if (const auto* answer = std::get_if<Answer>(&parsed)) return fmt::print("{}", answer->text), StageOutcome{};
-  auto& line = std::get<CommandLine>(parsed);
+  CommandLine line = parse_command_line(argc, argv, stage);
+  if (!line.answer.empty()) return fmt::print("{}", line.answer), StageOutcome{};
   context().verbosity = line.verbosity;
   context().threads = line.threads;
   context().network = line.network;
@@ -148,15 +276,6 @@ StageOutcome run_words(int argc, char** argv, const Stage& stage) {
 StageOutcome outcome_of_error(const Error& error) { return {error.code(), error.faults(), {}}; }
 
 }  // namespace
-
-std::string command_text(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    const bool quote = word.empty() || word.find_first_of(" \t\n'\"$*?;&|<>()") != std::string::npos;
-    text += (text.empty() ? "" : " ") + (quote ? "'" + word + "'" : word);
-  }
-  return text;
-}
 
 StageContext open_call(const Stage& stage, const StageCall& call) {
   for (const auto& [name, value] : call.flags)
@@ -206,8 +325,7 @@ void print_results(const std::vector<fs::path>& results) {
   for (const fs::path& path : results) fmt::print("{}\n", path.string());
   errno = 0;
   if (std::fflush(stdout) != 0)
-    throw DataError({"stdout: cannot be written", std::generic_category().message(errno),
-                     "The results themselves are in the output folder"});
+    throw DataError({"stdout: cannot be written", reason_of(errno), "The results themselves are in the output folder"});
 }
 
 int run_stage(int argc, char** argv, const Stage& stage) {

@@ -6,16 +6,49 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/error.hpp"
 #include "common/recipe/recipe.hpp"
-#include "common/stage/depends.hpp"
-#include "common/stage/freshness.hpp"
 
 namespace talus {
+
+struct Dependencies {
+  std::vector<std::filesystem::path> results;      ///< files that the stage writes; the last one written stands first
+  std::vector<std::filesystem::path> inputs;       ///< files that it reads besides the recipe
+  std::vector<std::filesystem::path> sealed = {};  ///< of these, sealed ones: it notes the checksum of what it reads
+};
+
+struct Stage;
+struct StageContext;
+
+/// What the results of a stage are made of.
+struct Ingredients {
+  /// Tables of the recipe, defaults filled in, each with the SHA-256 of its text.
+  std::vector<std::pair<std::string, std::string>> tables = {};
+  /// Files with their SHA-256: empty where one is no plain file, none where the stage notes it as it reads the file.
+  std::vector<std::pair<std::filesystem::path, std::optional<std::string>>> inputs = {};
+};
+
+/// The ingredients of a call as they are now. Throws what the stage throws where the recipe or an input is wrong.
+Ingredients ingredients_of(const Stage& stage, const StageContext& context);
+
+/// Completes the used recipe of a stage that has written all results: adds their names and ids.
+void note_results(const Stage& stage, const StageContext& context);
+
+struct Verdict {
+  std::string run_because = {};                     ///< why the stage runs; empty: the results are up to date
+  std::string remark = {};                          ///< a warning where they are
+  std::vector<std::filesystem::path> results = {};  ///< all that the stage has written, where they are up to date
+};
+
+/// The rule of freshness. Results are up to date where the used recipe names the same version and the same tables,
+/// where each input has the checksum noted, and where each result is there with the id noted. A missing input counts as
+/// unchanged; the remark names it.
+Verdict judge_freshness(const Stage& stage, const StageContext& context);
 
 /// What the command line asked for, and what the stage made.
 struct StageContext {
@@ -64,22 +97,25 @@ struct StageCall {
   std::string command = {};  ///< for the results; empty: made of the above
 };
 
-/// The end of a call.
 struct StageOutcome {
   ExitCode code = ExitCode::success;
   std::vector<Fault> faults = {};
   std::vector<std::filesystem::path> results = {};
 };
 
+/// The end of the --help of every program.
+inline constexpr const char* exit_codes =
+    "Exit codes: 0 done, 1 a bug, 2 the recipe or the command line is wrong, 3 a file is wrong or cannot be written,\n"
+    "4 the computation failed, 130 ended by Ctrl-C.\n"
+    "Result paths go to stdout, everything for people to stderr.";
+
 /// The `main` of a stage's program: parses the command line, runs the stage, prints faults on stderr and result paths
 /// on stdout. Returns the exit code. Options of every stage: recipe.toml, --out DIR (default: the recipe's folder /
 /// "out"), --set KEY=VALUE, --check, --if-outdated, --template, --threads N, --network, --on (which only a stage that
-/// runs kernels heeds), -v, -q, --help (exit codes and examples included), --version (with the commit); and those of
-/// stage.flags.
+/// runs kernels heeds), -v, -q, --help (with exit codes), --version (with the commit); and those of stage.flags.
 int run_stage(int argc, char** argv, const Stage& stage);
 
-/// Runs a stage in the calling thread's context. It throws nothing and prints nothing but the log. The folder is locked
-/// unless the context has locked it.
+/// Runs a stage in the calling thread's context, its folder locked. Throws nothing, prints nothing but the log.
 StageOutcome call_stage(const Stage& stage, const StageCall& call);
 
 /// The recipe and the folder of a call, its flags set; the folder is not made. Throws RecipeError.
@@ -93,9 +129,6 @@ int report_faults(const std::string& program, const StageOutcome& outcome);
 
 /// Result paths on stdout, one a line. Throws DataError where stdout takes none.
 void print_results(const std::vector<std::filesystem::path>& results);
-
-/// Words as a shell takes them.
-std::string command_text(const std::vector<std::string>& words);
 
 /// True once SIGINT or SIGTERM has come. A second one ends the process at once.
 bool interrupted();
@@ -137,9 +170,6 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 /// SHA-256 of a file, in hex. Throws DataError.
 std::string sha256(const std::filesystem::path& path);
 std::string sha256_of_text(const std::string& text);
-
-/// [scene] and a stage's table as a recipe of their own. `options_toml` is the table.
-std::string own_recipe(const recipe::Recipe& recipe, const std::string& options_toml);
 
 /// The text of `<stage>.used.toml`: the options with defaults filled in (recipe::to_used_toml marks those that were
 /// changed), and above them as comments version, command, context.made_of and further inputs with their checksums, CRS,

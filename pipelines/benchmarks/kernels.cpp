@@ -11,8 +11,7 @@
 #include "common/error.hpp"
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/parallel/any_device.hpp"
+#include "solver/parallel/device.hpp"
 #include "solver/parallel/profile.hpp"
 #include "solver/scene/make_solver.hpp"
 
@@ -35,8 +34,8 @@ void place_seeds(int margin, int wide, int high, ParticleState& s) {
   const auto count = static_cast<std::size_t>(8) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) *
                      static_cast<std::size_t>(high);
   for (auto* list : {&s.cell[0], &s.cell[1], &s.cell[2], &s.id}) list->reserve(count);
-  for (int k = 0; k < 2 * high; ++k) {
-    for (int j = 0; j < 2 * wide; ++j) {
+  for (int k = 0; k < 2 * high; ++k)
+    for (int j = 0; j < 2 * wide; ++j)
       for (int i = 0; i < 2 * wide; ++i) {
         const double at[3] = {margin + 0.25 + 0.5 * i, margin + 0.25 + 0.5 * j, 0.25 + 0.5 * k};
         for (int a = 0; a < 3; ++a) {
@@ -46,8 +45,6 @@ void place_seeds(int margin, int wide, int high, ParticleState& s) {
         }
         s.id.push_back(static_cast<int>(s.id.size()));
       }
-    }
-  }
 }
 
 /// A block of sand 8 points to a cell, four times as wide as high, on level ground without friction, on its way.
@@ -165,9 +162,8 @@ void profile_steps(const KernelSetting& k, Solver& solver, Profile& profile, Ker
     return taken;
   };
   const auto keep_phases = [&](int over) {
-    for (const auto& phase : profile.phases()) {
+    for (const auto& phase : profile.phases())
       if (phase.seconds > 0) run.phases.emplace_back(phase.name, phase.seconds / over);
-    }
   };
   if (k.newmark) {  // whose phases hold many kernels each: marks around every one would be in the way
     const Taken taken = profiled(false);

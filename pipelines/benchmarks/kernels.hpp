@@ -32,8 +32,7 @@ struct KernelRun {
   std::vector<std::pair<std::string, double>> memory;  // bytes by owner
 
   double eta() const { return step_seconds / points; }
-  /// Of the phase of this name, a step; 0 without one.
-  double seconds_of(const std::string& phase) const;
+  double seconds_of(const std::string& phase) const;  ///< of the phase of this name, a step; 0 without one
   /// Of a Newton iteration: stress and tangent, contacts, preconditioner and conjugate gradients; 0 without any.
   double newton_seconds() const;
 };

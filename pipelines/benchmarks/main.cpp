@@ -17,7 +17,7 @@
 #include "common/stage/stage.hpp"
 #include "pipelines/benchmarks/kernels.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/parallel/bandwidth.hpp"
+#include "solver/parallel/algorithms.hpp"
 #include "solver/scene/make_solver.hpp"
 #include "tests/validation/chart.hpp"
 
@@ -114,15 +114,13 @@ std::string picture(const std::string& title, const std::string& label, const st
 /// The settings that rows are timed with: methods, shapes and precisions whose name contains `only`.
 std::vector<KernelSetting> settings_of(const std::string& only) {
   std::vector<KernelSetting> settings;
-  for (const bool newmark : {false, true}) {
-    for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic}) {
+  for (const bool newmark : {false, true})
+    for (const auto shape : {ShapeKind::linear, ShapeKind::quadratic})
       for (const auto precision : {Precision::single_, Precision::double_}) {
         const KernelSetting setting{newmark, shape, precision, 0};
         if (newmark && precision == Precision::single_) continue;
         if (benchmarks::name_of(setting).find(only) != std::string::npos) settings.push_back(setting);
       }
-    }
-  }
   return settings;
 }
 
@@ -150,7 +148,7 @@ int kernels(const Words& words, On on) {
   const double copy = on == On::gpu ? copy_bandwidth(GpuDevice::make()) : copy_bandwidth(CpuDevice::make());
   std::vector<KernelRun> runs;
   bool pass = true;
-  for (KernelSetting setting : settings_of(words.only)) {
+  for (KernelSetting setting : settings_of(words.only))
     for (const double points : numbers_of_points(setting, words.least, most)) {
       setting.points = points;
       try {
@@ -164,7 +162,6 @@ int kernels(const Words& words, On on) {
       fmt::print(stderr, "{}", line_of(runs.back()));
       write_text(words.out / "kernels.csv", csv_of(runs, copy));
     }
-  }
   if (runs.empty())
     throw RecipeError({"no row of the bench contains \"" + words.only + "\" between --least and --most", "", ""});
   write_text(words.out / "kernels-time.png",

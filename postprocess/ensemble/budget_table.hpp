@@ -10,7 +10,6 @@
 
 #include "common/map/raster.hpp"
 #include "postprocess/ensemble/ensemble.hpp"
-#include "postprocess/ensemble/member_rows.hpp"
 #include "postprocess/options/options.hpp"
 
 namespace talus::postprocess {
@@ -40,16 +39,12 @@ struct SpreadMap {
   Raster raster;     ///< NaN outside the domain
 };
 
-/// The table, and the maps of spread.
 struct BudgetTable {
   BudgetLine own;                   ///< the recipe itself
   std::vector<std::string> scores;  ///< names of scores against the survey, as in members.csv
   std::vector<BudgetLine> lines;    ///< the largest `elsewhere` first; then what failed, then what was left out
   std::vector<SpreadMap> spreads;   ///< over all members, over the physical rows, over the numerical ones
 };
-
-/// The name of a kind: "numerical".
-const char* kind_name(BudgetKind kind);
 
 /// Compares the members of a budget with the recipe itself. Throws DataError where that failed or was not run.
 BudgetTable budget_table(const Ensemble& ensemble, const MemberRows& rows, const Options& options);

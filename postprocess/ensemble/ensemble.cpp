@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/ensemble/ensemble.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "common/ensemble/names.hpp"
 #include "common/stage/identity.hpp"
+#include "common/stage/machine.hpp"
+#include "postprocess/fields/fields.hpp"
+#include "postprocess/score/contingency.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;
@@ -44,15 +49,6 @@ void judge_counts(const StageContext& context, const fs::path& file, const Ensem
                   {.file = file, .table = table, .mark = fact(counts.provenance, name), .program = program, .key = ""});
 }
 
-void tell_of_edges(const Ensemble& ensemble) {
-  const std::vector<std::int64_t> members = ensemble.counts.at_edge();
-  if (members.empty()) return;
-  warn("members-at-edge",
-       fmt::format("{} came to the edge of their domain: {}; what lies beyond is missing from maps and numbers",
-                   members.size() == 1 ? "one member" : fmt::format("{} members", members.size()),
-                   ensemble.table.slides ? ensemble.table.names_of(members, 12) : member_list(members)));
-}
-
 void tell_of_members(const Ensemble& ensemble) {
   const EnsembleCounts& counts = ensemble.counts;
   std::vector<std::int64_t> waiting;
@@ -73,7 +69,127 @@ void tell_of_members(const Ensemble& ensemble) {
     warn("members-failed",
          fmt::format("{} of {} members failed ({}) and are left out of all counts; members.csv has the reasons",
                      failed.size(), counts.members, member_list(failed)));
-  tell_of_edges(ensemble);
+  const std::vector<std::int64_t> edge = counts.at_edge();
+  if (!edge.empty())
+    warn("members-at-edge",
+         fmt::format("{} came to the edge of their domain: {}; what lies beyond is missing from maps and numbers",
+                     edge.size() == 1 ? "one member" : fmt::format("{} members", edge.size()),
+                     ensemble.table.slides ? ensemble.table.names_of(edge, 12) : member_list(edge)));
+}
+
+std::string cell(const RowColumn& column, std::size_t member) {
+  const double value = column.values[member];
+  if (std::isnan(value)) return "";
+  return column.words.empty() ? fmt::format("{}", value) : csv_field(column.words.at(static_cast<std::size_t>(value)));
+}
+
+/// A footprint on the survey's grid, as the share of each cell that it covers; where the run's map ends, nothing.
+std::vector<double> on_survey(const Footprint& footprint, const MapGrid& from, const MapGrid& to) {
+  const std::vector<std::uint8_t> cells = cells_of(footprint, from.count());
+  std::vector<double> share = on_grid({from, {cells.begin(), cells.end()}}, to);
+  for (double& value : share)
+    if (!(value > 0)) value = 0;
+  return share;
+}
+
+/// The thickness of a member's deposit on the survey's grid [m]; 0 where the run's map ends, as for a single run.
+std::vector<double> deposit_on_survey(const KeptThickness& deposit, const MapGrid& from, const MapGrid& to) {
+  std::vector<double> thickness = on_grid({from, deposit.thickness(from.count())}, to);
+  for (double& h : thickness)
+    if (std::isnan(h)) h = 0;
+  return thickness;
+}
+
+/// The surveyed deposit where members' footprints can be compared with it.
+std::vector<double> comparable_deposit(const Survey& survey, const EnsembleScene& scene) {
+  std::vector<double> deposit = survey.deposit;
+  if (!survey.deposit_is_change || deposit.empty()) return deposit;
+  const std::vector<double> released = on_grid({scene.grid, scene.release_thickness}, survey.grid);
+  for (std::size_t cell = 0; cell < deposit.size(); ++cell)
+    if (released[cell] > 0) deposit[cell] = nan;
+  return deposit;
+}
+
+/// The scores of all members against one survey, one column each.
+class Scores {
+ public:
+  Scores(const EnsembleCounts& counts, const Survey& survey, double deposit_threshold)
+      : counts_(counts),
+        survey_(survey),
+        surveyed_deposit_(comparable_deposit(survey, counts.scene)),
+        deposit_threshold_(deposit_threshold),
+        cell_area_(survey.grid.cell * survey.grid.cell) {
+    const std::string footprint =
+        fmt::format("footprint (thicker than {:g} m) against {}", counts.scene.threshold, survey.name);
+    const std::string thickness = fmt::format("the deposit's thickness against {}", survey.name);
+    const std::vector<double> none(counts.states.size(), nan);
+    flow_ = {{ColumnKind::score, "footprint_csi", "1", "critical success index of the " + footprint, none, {}},
+             {ColumnKind::score, "footprint_hit_rate", "1", "hit rate of the " + footprint, none, {}},
+             {ColumnKind::score, "footprint_false_alarm_ratio", "1", "false alarms of the " + footprint, none, {}}};
+    deposit_ = {
+        {ColumnKind::score, "deposit_csi", "1", "critical success index of the deposit's " + footprint, none, {}}};
+    thickness_ = {{ColumnKind::score, "thickness_rmse_m", "m", "root mean square error of " + thickness, none, {}},
+                  {ColumnKind::score, "thickness_bias_m", "m", "mean error of " + thickness, none, {}}};
+  }
+
+  /// Writes the scores of member k; different members may be scored at the same time.
+  void score(std::size_t k) {
+    const MapGrid& from = counts_.scene.grid;
+    const MapGrid& to = survey_.grid;
+    if (!survey_.footprint.empty()) {
+      const Contingency here = compare(on_survey(counts_.flow[k], from, to), 0.5, survey_.footprint,
+                                       survey_.footprint_threshold, cell_area_);
+      flow_[0].values[k] = here.csi();
+      flow_[1].values[k] = here.hit_rate();
+      flow_[2].values[k] = here.false_alarm_ratio();
+    }
+    if (surveyed_deposit_.empty()) return;
+    deposit_[0].values[k] =
+        compare(on_survey(counts_.deposit[k], from, to), 0.5, surveyed_deposit_, deposit_threshold_, cell_area_).csi();
+    if (!counts_.deposit_thickness[k].kept()) return;
+    const ThicknessError error = thickness_error(
+        deposit_on_survey(counts_.deposit_thickness[k], counts_.grid_of(static_cast<std::int64_t>(k)), to),
+        surveyed_deposit_, deposit_threshold_);
+    thickness_[0].values[k] = error.rmse;
+    thickness_[1].values[k] = error.bias;
+  }
+
+  /// The columns that have something to compare with.
+  std::vector<RowColumn> columns() {
+    std::vector<RowColumn> columns;
+    const auto add = [&](std::vector<RowColumn>& more) { std::ranges::move(more, std::back_inserter(columns)); };
+    if (!survey_.footprint.empty()) add(flow_);
+    if (surveyed_deposit_.empty()) return columns;
+    add(deposit_);
+    if (std::ranges::any_of(counts_.deposit_thickness, [](const KeptThickness& one) { return one.kept(); }))
+      add(thickness_);
+    else
+      log_info(
+          "the members' deposits were not kept: no thickness_rmse_m ([ensemble] keep = [\"deposits\"] keeps them)");
+    return columns;
+  }
+
+ private:
+  const EnsembleCounts& counts_;
+  const Survey& survey_;
+  std::vector<double> surveyed_deposit_;
+  double deposit_threshold_;
+  double cell_area_;
+  std::vector<RowColumn> flow_;       // overlap of the footprint of the flow
+  std::vector<RowColumn> deposit_;    // overlap of the footprint of the deposit
+  std::vector<RowColumn> thickness_;  // errors of the deposit's thickness
+};
+
+/// Scores of each member on the survey's grid, whose cells are covered where a footprint covers more than half of them;
+/// errors of the thickness, where it was kept, over the cells where either exceeds the threshold. Of a surveyed change
+/// the cells that were released are left out of the deposit, for what lies there is no gain of height.
+std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& survey, double deposit_threshold) {
+  const EnsembleCounts& counts = ensemble.counts;
+  Scores scores(counts, survey, deposit_threshold);
+  in_threads(counts.states.size(), "scoring the members", [&](std::size_t k) {
+    if (counts.states[k] == MemberState::counted) scores.score(k);
+  });
+  return scores.columns();
 }
 
 }  // namespace
@@ -136,6 +252,53 @@ std::string members_words(const Ensemble& ensemble) {
   return fmt::format("{} of {} members are counted, {} failed, {} wait", ensemble.counted(), ensemble.counts.members,
                      ensemble.failed(), ensemble.waiting()) +
          (left_out > 0 ? fmt::format(", {} left out", left_out) : "");
+}
+
+const char* word_of(MemberState state) {
+  constexpr const char* words[] = {"waiting", "counted", "failed", "left out"};
+  return words[static_cast<std::size_t>(state)];
+}
+
+MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey) {
+  const EnsembleCounts& counts = ensemble.counts;
+  const std::vector<std::string> none(counts.states.size());
+  MemberRows rows{counts.states, none, none, {}};
+  for (const MemberWords& failure : counts.failures)
+    rows.failures.at(static_cast<std::size_t>(failure.member)) = failure.words;
+  for (const Finding& warning : counts.findings) {
+    if (warning.member == Finding::no_member || warning.severity != Severity::warning) continue;
+    std::string& words = rows.warnings.at(static_cast<std::size_t>(warning.member));
+    words += (words.empty() ? "" : "; ") + warning.message;
+  }
+  if (const auto& names = ensemble.table.names; !names.empty()) {
+    RowColumn column{ColumnKind::input, "name", "", ensemble.table.slides ? "name of the slide" : "name", {}, names};
+    for (std::size_t k = 0; k < names.size(); ++k) column.values.push_back(static_cast<double>(k));
+    rows.columns.push_back(std::move(column));
+  }
+  for (const MemberColumn& column : ensemble.table.columns)
+    rows.columns.push_back({ColumnKind::input, column.key, "", column.key, column.values, column.words});
+  for (const ResultNumber& number : result_numbers) {
+    RowColumn column{ColumnKind::result, number.name, number.unit, number.meaning, {}, {}};
+    for (std::size_t k = 0; k < counts.results.size(); ++k)
+      column.values.push_back(counts.states[k] == MemberState::counted ? counts.results[k].*(number.value) : nan);
+    rows.columns.push_back(std::move(column));
+  }
+  if (survey)
+    for (RowColumn& column : member_scores(ensemble, *survey, options.deposit_threshold))
+      rows.columns.push_back(std::move(column));
+  return rows;
+}
+
+std::string members_csv(const MemberRows& rows, const char* called) {
+  std::string text = std::string(called) + ",state";
+  for (const RowColumn& column : rows.columns) text += "," + csv_field(column.name);
+  text += ",failure,warnings\n";
+  for (std::size_t k = 0; k < rows.states.size(); ++k) {
+    text += fmt::format("{},{}", k, word_of(rows.states[k]));
+    for (const RowColumn& column : rows.columns) text += "," + cell(column, k);
+    text += "," + csv_field(rows.failures[k]) + "," + csv_field(rows.warnings[k]) + "\n";
+  }
+  return text;
 }
 
 }  // namespace talus::postprocess

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An ensemble as talus-preprocess and talus-solve left it: who its members are, and what was counted of them.
+// An ensemble as talus-preprocess and talus-solve left it: who its members are, what was counted of them, and a row for
+// each: what it was given, and what came of it.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,8 @@
 #include "common/run/run_file.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
+#include "postprocess/options/options.hpp"
+#include "postprocess/survey/survey.hpp"
 
 namespace talus::postprocess {
 
@@ -25,11 +28,9 @@ struct Ensemble {
   std::vector<std::filesystem::path> files;  ///< members.h5, then the counts
   std::vector<Finding> findings;             ///< of this stage
 
-  /// Members whose run is in the counts.
+  // Numbers of members whose run is in the counts, whose run failed, and that no file of counts holds.
   std::int64_t counted() const { return counts.count(MemberState::counted); }
-  /// Members whose run failed.
   std::int64_t failed() const { return counts.count(MemberState::failed); }
-  /// Members that no file of counts holds.
   std::int64_t waiting() const { return counts.count(MemberState::waiting); }
 };
 
@@ -49,5 +50,34 @@ std::string member_list(const std::vector<std::int64_t>& members, std::size_t mo
 
 /// How many members of which kind, as one sentence: "98 of 100 members are counted, 2 failed, 0 wait".
 std::string members_words(const Ensemble& ensemble);
+
+enum class ColumnKind { input, result, score };
+
+/// A column of numbers, or of words.
+struct RowColumn {
+  ColumnKind kind{};
+  std::string name;                ///< "solve.base.friction_angle_deg", "run_out_m", "footprint_csi"
+  std::string unit;                ///< in UDUNITS' words; empty where the name of a key says it
+  std::string title;               ///< what it is
+  std::vector<double> values;      ///< [members]; NaN where there is none; of words: their places in `words`
+  std::vector<std::string> words;  ///< that it takes; empty: numbers
+};
+
+struct MemberRows {
+  std::vector<MemberState> states;    ///< [members]
+  std::vector<std::string> failures;  ///< [members]: why it failed or was left out; empty otherwise
+  std::vector<std::string> warnings;  ///< [members]: what it warned of; empty otherwise
+  std::vector<RowColumn> columns;
+};
+
+/// The state of a member in words: "left out".
+const char* word_of(MemberState state);
+
+/// Inputs, results, and scores against the survey where there is one.
+MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey);
+
+/// The table as comma-separated values (RFC 4180): number, state, the columns, failure. Numbers as they round-trip.
+/// `called`: what the numbers are of.
+std::string members_csv(const MemberRows& rows, const char* called = "member");
 
 }  // namespace talus::postprocess

@@ -1,20 +1,87 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// probability.nc: the maps of an ensemble, and the table of its members.
+// probability.nc: the maps of an ensemble, and the table of its members. slides.nc: the table of slides.
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "postprocess/ensemble/facts.hpp"
-#include "postprocess/ensemble/hazard.hpp"
-#include "postprocess/ensemble/netcdf_members.hpp"
-#include "postprocess/ensemble/sampling_error.hpp"
-#include "postprocess/ensemble/write_maps.hpp"
-#include "postprocess/maps/nc_grid.hpp"
+#include "postprocess/ensemble/maps_of_ensemble.hpp"
+#include "postprocess/ensemble/results.hpp"
+#include "postprocess/maps/nc_file.hpp"
 
 namespace talus::postprocess {
+
 namespace {
+
+/// Words of a column as CF's flags: blanks become underscores.
+std::string flag_meanings(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::string word : words) {
+    std::replace(word.begin(), word.end(), ' ', '_');
+    text += (text.empty() ? "" : " ") + word;
+  }
+  return text;
+}
+
+/// Whether each row has a word of its own.
+bool are_names(const RowColumn& column) { return column.name == "name" && column.words.size() == column.values.size(); }
+
+/// The variables of a new group, one for each column. `called`: what a row is of, and the name of the dimension.
+std::vector<int> define_members(Nc& nc, const MemberRows& rows, const char* group, const char* called) {
+  std::vector<int> variables;
+  nc.enter_group(group);
+  const int dimension = nc.dimension(called, rows.states.size());
+  const auto add = [&](const std::string& name, const std::string& words, const std::string& unit,
+                       nc_type type = NC_DOUBLE) {
+    const int id = nc.variable(name.c_str(), type, {dimension});
+    nc.text(id, "long_name", words);
+    if (!unit.empty()) nc.text(id, "units", unit);
+    variables.push_back(id);
+    return id;
+  };
+  const auto flags = [&](int id, const std::vector<std::string>& words) {
+    std::vector<double> values;
+    for (std::size_t n = 0; n < words.size(); ++n) values.push_back(static_cast<double>(n));
+    nc.numbers(id, "flag_values", values);
+    nc.text(id, "flag_meanings", flag_meanings(words));
+  };
+  add(called, fmt::format("number of the {}, from 0", called), "1");
+  flags(add("state", fmt::format("what became of the {}", called), ""), {"waiting", "counted", "failed"});
+  for (const RowColumn& column : rows.columns) {
+    const int id = add(nc_name(column.name), column.title, column.unit, are_names(column) ? NC_STRING : NC_DOUBLE);
+    if (!column.words.empty() && !are_names(column)) flags(id, column.words);
+  }
+  nc.leave_group();
+  return variables;
+}
+
+/// Writes their values, once definitions have ended.
+void fill_members(Nc& nc, const std::vector<int>& variables, const MemberRows& rows, const char* group) {
+  nc.reenter_group(group);
+  std::vector<double> numbers, states;
+  for (std::size_t k = 0; k < rows.states.size(); ++k) {
+    numbers.push_back(static_cast<double>(k));
+    states.push_back(static_cast<double>(rows.states[k]));
+  }
+  nc.put(variables[0], numbers);
+  nc.put(variables[1], states);
+  for (std::size_t n = 0; n < rows.columns.size(); ++n)
+    if (are_names(rows.columns[n]))
+      nc.put_texts(variables[n + 2], rows.columns[n].words);
+    else
+      nc.put(variables[n + 2], rows.columns[n].values);
+  nc.leave_group();
+}
+
+/// Attributes of a file about all members: `title` is behind the scene's, `source` behind the version.
+void describe_members(Nc& nc, const Ensemble& ensemble, const std::string& title, const std::string& source,
+                      const Options& options, const std::string& command_line) {
+  describe_file(nc, ensemble.counts.scene.title + ": " + title, options.institution,
+                "Talus " + version() + ", " + source, command_line);
+  for (const auto& [name, words] : ensemble_facts(ensemble))
+    if (name != "TITLE" && name != "SOURCE") nc.text(NC_GLOBAL, lower_case(name).c_str(), words);
+}
 
 using Kind = EnsembleMapKind;
 
@@ -32,20 +99,22 @@ struct NcPlan {
   std::vector<int> members;
 };
 
+/// The words of kinds of maps: about the quantity in the name of a variable, and before it in the long name.
+constexpr struct {
+  EnsembleMapKind kind;
+  const char *before, *after, *words;
+} kind_words[] = {
+    {Kind::share, "probability_of_", "", "probability of "},
+    {Kind::error, "probability_error_of_", "", "standard error of the probability of "},
+    {Kind::to_halve, "members_to_halve_error_of_", "", "members that would halve the error of the probability of "},
+    {Kind::quantile, "", "_quantile", "quantile of "},
+    {Kind::mean, "", "_mean", ""},
+    {Kind::deviation, "", "_deviation", ""}};
+
 /// "peak_thickness" -> "probability_of_peak_thickness"; "peak_thickness_mean" and the hazard as they are.
 std::string variable_name(const EnsembleMap& map) {
-  const std::string what = counted_maps[map.tally].name;
-  switch (map.kind) {
-    case Kind::share: return "probability_of_" + what;
-    case Kind::error: return "probability_error_of_" + what;
-    case Kind::to_halve: return "members_to_halve_error_of_" + what;
-    case Kind::quantile: return what + "_quantile";
-    case Kind::mean: return what + "_mean";
-    case Kind::deviation: return what + "_deviation";
-    case Kind::count: return "members_of_" + what;
-    case Kind::largest: return "largest_" + what;
-    case Kind::hazard: break;
-  }
+  for (const auto& [kind, before, after, words] : kind_words)
+    if (kind == map.kind) return std::string(before) + counted_maps[map.tally].name + after;
   return "hazard_class";
 }
 
@@ -56,14 +125,13 @@ bool by_threshold(const EnsembleMap& map) {
 /// What the whole variable is, whose maps are at several thresholds or shares.
 std::string long_name(const EnsembleMap& map) {
   const CountedMap& what = counted_maps[map.tally];
-  const std::string words = words_of(what) + (what.early ? " of the threshold or less" : " of the threshold or more");
-  switch (map.kind) {
-    case Kind::share: return "probability of " + words;
-    case Kind::error: return "standard error of the probability of " + words;
-    case Kind::to_halve: return "members that would halve the error of the probability of " + words;
-    case Kind::quantile: return "quantile of " + words_of(what);
-    default: return map.title;
-  }
+  for (const auto& [kind, before, after, words] : kind_words)
+    if (kind == map.kind && *words != '\0')
+      return words + words_of(what) +
+             (!by_threshold(map) ? ""
+              : what.early       ? " of the threshold or less"
+                                 : " of the threshold or more");
+  return map.title;
 }
 
 int define_coordinate(Nc& nc, NcPlan& plan, const std::string& name, const std::string& words, const std::string& unit,
@@ -77,8 +145,7 @@ int define_coordinate(Nc& nc, NcPlan& plan, const std::string& name, const std::
 }
 
 void describe(Nc& nc, const Ensemble& ensemble, const Options& options, const std::string& command_line) {
-  describe_members_file(nc, ensemble, "probability", "ensemble of runs of the material point method", options,
-                        command_line);
+  describe_members(nc, ensemble, "probability", "ensemble of runs of the material point method", options, command_line);
   nc.text(NC_GLOBAL, "comment",
           share_words(ensemble.table.design).meaning + " " + share_words(ensemble.table.design).error +
               " Thickness is vertical (along the plumb line), not normal to the slope. Cells outside the computed "
@@ -90,8 +157,7 @@ void define_map(Nc& nc, NcPlan& plan, const EnsembleMap& map, const MapGrid& gri
                 const std::string& comment) {
   std::vector<int> dimensions{plan.axes.y.dimension, plan.axes.x.dimension};
   if (first_dimension >= 0) dimensions.insert(dimensions.begin(), first_dimension);
-  const int id = nc.field(variable_name(map).c_str(), dimensions, static_cast<std::size_t>(grid.rows),
-                          static_cast<std::size_t>(grid.columns));
+  const int id = nc.field(variable_name(map).c_str(), dimensions);
   nc.text(id, "long_name", long_name(map));
   nc.text(id, "units", map.unit);
   if (!comment.empty()) nc.text(id, "comment", comment);
@@ -130,7 +196,6 @@ void define_maps(Nc& nc, NcPlan& plan, const Ensemble& ensemble, const HazardOpt
 }
 
 void fill_maps(Nc& nc, const NcPlan& plan, const Ensemble& ensemble, const HazardOptions& hazard) {
-  const MapGrid& grid = ensemble.counts.scene.grid;
   for (const NcStack& stack : plan.stacks) {
     const bool several = by_threshold(stack.maps[0]) || stack.maps[0].kind == Kind::quantile;
     for (std::size_t n = 0; n < stack.maps.size(); ++n) {
@@ -139,8 +204,7 @@ void fill_maps(Nc& nc, const NcPlan& plan, const Ensemble& ensemble, const Hazar
       for (double& value : values)
         if (std::isnan(value)) value = nc_fill;
       if (several)
-        nc.put_map(stack.variable, n, static_cast<std::size_t>(grid.rows), static_cast<std::size_t>(grid.columns),
-                   values);
+        nc.put_map(stack.variable, n, values);
       else
         nc.put(stack.variable, values);
     }
@@ -164,6 +228,18 @@ void write_probability_netcdf(const std::filesystem::path& file, const Ensemble&
   for (const auto& [id, values] : plan.coordinates) nc.put(id, values);
   fill_maps(nc, plan, ensemble, options.hazard);
   fill_members(nc, plan.members, rows, "members");
+  write_text(file, nc.close());
+}
+
+void write_slides_netcdf(const std::filesystem::path& file, const Ensemble& ensemble, const MemberRows& rows,
+                         const Options& options, const std::string& command_line) {
+  const EnsembleScene& scene = ensemble.counts.scene;
+  Nc nc(file);
+  describe_members(nc, ensemble, "slides", "a run of the material point method for each slide", options, command_line);
+  if (!scene.grid.crs_wkt.empty()) define_crs(nc, scene.grid);
+  const std::vector<int> variables = define_members(nc, rows, "slides", "slide");
+  nc.end_definitions();
+  fill_members(nc, variables, rows, "slides");
   write_text(file, nc.close());
 }
 

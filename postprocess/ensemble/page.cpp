@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/ensemble/page.hpp"
+#include "postprocess/ensemble/results.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <set>
@@ -12,16 +11,6 @@
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
-#include "postprocess/ensemble/convergence.hpp"
-#include "postprocess/ensemble/facts.hpp"
-#include "postprocess/ensemble/hazard.hpp"
-#include "postprocess/ensemble/maps_of_ensemble.hpp"
-#include "postprocess/ensemble/medoids.hpp"
-#include "postprocess/ensemble/sampling_error.hpp"
-#include "postprocess/report/filled_page.hpp"
-#include "postprocess/report/pack.hpp"
-#include "postprocess/report/page.hpp"
-#include "postprocess/report/parts.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -42,8 +31,7 @@ constexpr std::size_t members_compared = 400;
 Json words_json(const Ensemble& ensemble, const std::vector<MemberWords>& list) {
   auto json = Json::array();
   for (const MemberWords& one : list)
-    if (json.size() < words_on_page &&
-        ensemble.counts.states[static_cast<std::size_t>(one.member)] != MemberState::left_out)
+    if (json.size() < words_on_page && ensemble.counts.state_of(one.member) != MemberState::left_out)
       json.push_back({ensemble.table.name_of(one.member), one.words});
   return json;
 }
@@ -106,6 +94,7 @@ Json rounded_list(const std::vector<double>& values, std::size_t count) {
 }
 
 Json members_json(const MemberRows& rows) {
+  constexpr const char* kinds[] = {"input", "result", "score"};
   const std::size_t shown = std::min(rows.states.size(), members_on_page);
   Json json{{"all", rows.states.size()}, {"shown", shown}, {"states", Json::array()}, {"columns", Json::array()}};
   for (std::size_t k = 0; k < shown; ++k) json["states"].push_back(static_cast<int>(rows.states[k]));
@@ -113,9 +102,7 @@ Json members_json(const MemberRows& rows) {
     json["columns"].push_back({{"name", column.name},
                                {"unit", column.unit},
                                {"title", column.title},
-                               {"kind", column.kind == ColumnKind::input    ? "input"
-                                        : column.kind == ColumnKind::result ? "result"
-                                                                            : "score"},
+                               {"kind", kinds[static_cast<std::size_t>(column.kind)]},
                                {"words", column.words},
                                {"values", rounded_list(column.values, shown)}});
   return json;
@@ -127,8 +114,8 @@ Json sensitivity_json(const EnsemblePageInput& input) {
     auto indices = Json::array();
     for (const SensitivityIndex& index : found.indices)
       indices.push_back({{"key", index.key},
-                         {"measure", measure_name(index.measure)},
-                         {"title", measure_title(index.measure)},
+                         {"measure", measure_words(index.measure).name},
+                         {"title", measure_words(index.measure).title},
                          {"value", index.value},
                          {"low", std::isfinite(index.low) ? Json(index.low) : Json()},
                          {"high", std::isfinite(index.high) ? Json(index.high) : Json()}});
@@ -150,7 +137,6 @@ Json convergence_json(const MemberRows& rows) {
   return list;
 }
 
-/// Members that stand for the others.
 Json medoids_json(const Ensemble& ensemble) {
   const Medoids found = medoids(ensemble.counts, medoids_wanted, members_compared);
   std::int64_t of = 0;
@@ -158,35 +144,31 @@ Json medoids_json(const Ensemble& ensemble) {
   return {{"members", found.members}, {"counts", found.counts}, {"of", of}, {"mean_distance", found.mean_distance}};
 }
 
+/// The part of the map that is shown: all that any member reached, released or surveyed.
+Window ensemble_window(const EnsemblePageInput& input) {
+  const EnsembleCounts& counts = input.ensemble.counts;
+  RunMaps maps = base_maps(counts.scene);
+  const std::vector<std::uint32_t> reached = counts.cells.spread(counts.maps[0].reached, 0u);
+  for (std::size_t cell = 0; cell < reached.size(); ++cell)
+    maps.peak_thickness[cell] = reached[cell] > 0 ? 2 * input.options.footprint_threshold : 0;
+  return page_window(maps, input.options, input.survey);
+}
+
+/// What the page of an ensemble or of a budget has of maps and outlines.
+PageParts ensemble_page_parts(const EnsemblePageInput& input) {
+  const Window window = ensemble_window(input);
+  const MapGrid& grid = input.ensemble.counts.scene.grid;
+  const MapGrid shown = cut({grid, std::vector<double>(grid.count(), 0.0)}, window).grid;
+  return {ensemble_maps_json(input, window), ensemble_outlines_json(input, window, shown),
+          is_sample(input.ensemble) ? medoids_json(input.ensemble) : no_medoids()};
+}
+
 }  // namespace
 
 Json no_medoids() { return {{"members", Json::array()}, {"counts", Json::array()}, {"of", 0}, {"mean_distance", 0}}; }
 
-Window ensemble_window(const EnsemblePageInput& input) {
-  RunMaps maps = base_maps(input.ensemble.counts.scene);
-  const EnsembleCounts& counts = input.ensemble.counts;
-  const std::vector<std::uint32_t> reached = counts.cells.spread(counts.maps[0].reached, 0u);
-  for (std::size_t cell = 0; cell < reached.size(); ++cell)
-    maps.peak_thickness[cell] = reached[cell] > 0 ? 2 * input.options.footprint_threshold : 0;
-  Window window = affected_window(maps, input.options, input.survey);
-  const double width = std::min(std::max(window.width(), window.height()), maps.grid.east() - maps.grid.west);
-  window.west = std::clamp(0.5 * (window.west + window.east - width), maps.grid.west, maps.grid.east() - width);
-  window.east = window.west + width;
-  return window;
-}
-
 std::string ensemble_html(const EnsemblePageInput& input) {
-  const Window window = ensemble_window(input);
-  int coarsest = 1;
-  const MapGrid& grid = input.ensemble.counts.scene.grid;
-  const MapGrid shown = cut({grid, std::vector<double>(grid.count(), 0.0)}, window).grid;
-  PageParts parts{ensemble_maps_json(input, window, coarsest), ensemble_outlines_json(input, window, shown),
-                  is_sample(input.ensemble) ? medoids_json(input.ensemble) : no_medoids()};
-  parts.map["coarsest"] = coarsest;
-  return ensemble_html(input, std::move(parts));
-}
-
-std::string ensemble_html(const EnsemblePageInput& input, PageParts parts) {
+  PageParts parts = input.ensemble.table.slides ? slide_page_parts(input) : ensemble_page_parts(input);
   Json data;
   data["run"] = run_json(input);
   data["map"] = std::move(parts.map);

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/hazard/reach_cone.hpp"
+#include "postprocess/hazard/hazard.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "common/map/usual_reach.hpp"
@@ -28,30 +27,26 @@ constexpr std::size_t most_crowns = 1000;
 /// Whether a neighbour of a cell of the release is none, or the map ends there.
 bool at_the_edge(const RunMaps& maps, int column, int row) {
   for (int r = row - 1; r <= row + 1; ++r) {
-    for (int c = column - 1; c <= column + 1; ++c) {
+    for (int c = column - 1; c <= column + 1; ++c)
       if (!maps.grid.holds(c, r) || !(maps.initial_thickness[maps.grid.index(c, r)] > 0)) return true;
-    }
   }
   return false;
 }
 
-/// The cells at the edge of the release, and within it of every block of `side` cells the highest; the highest of all
-/// first.
+/// The cells at the edge of the release, and within it of every block of `side` cells the highest; highest first.
 std::vector<Crown> released_places(const RunMaps& maps, int side) {
   std::map<std::pair<int, int>, Crown> highest;
   std::vector<Crown> all;
-  for (int row = 0; row < maps.grid.rows; ++row) {
-    for (int column = 0; column < maps.grid.columns; ++column) {
-      const std::size_t i = maps.grid.index(column, row);
-      if (!(maps.initial_thickness[i] > 0) || !std::isfinite(maps.before[i])) continue;
-      const Crown here{maps.grid.x(column), maps.grid.y(row), maps.before[i]};
-      if (side > 1 && at_the_edge(maps, column, row)) {
-        all.push_back(here);
-        continue;
-      }
-      const auto [place, is_new] = highest.try_emplace({column / side, row / side}, here);
-      if (!is_new && here.z > place->second.z) place->second = here;
+  for (std::size_t i = 0; i < maps.grid.count(); ++i) {
+    if (!(maps.initial_thickness[i] > 0) || !std::isfinite(maps.before[i])) continue;
+    const auto [column, row] = maps.grid.cell_of(i);
+    const Crown here{maps.grid.x(column), maps.grid.y(row), maps.before[i]};
+    if (side > 1 && at_the_edge(maps, column, row)) {
+      all.push_back(here);
+      continue;
     }
+    const auto [place, is_new] = highest.try_emplace({column / side, row / side}, here);
+    if (!is_new && here.z > place->second.z) place->second = here;
   }
   for (const auto& [block, crown] : highest) all.push_back(crown);
   std::sort(all.begin(), all.end(), [](const Crown& a, const Crown& b) { return a.z > b.z; });
@@ -82,8 +77,7 @@ double head_at(const RunMaps& maps, const std::vector<Crown>& crowns, double tan
   return line - maps.before[i];
 }
 
-/// The cells over which the line passes on from the release: what lies behind a ridge that rises above it is not
-/// reached.
+/// The cells over which the line passes on from the release: not what lies behind a ridge that rises above it.
 std::vector<double> passed(const RunMaps& maps, const std::vector<Crown>& crowns, double tangent) {
   std::vector<double> head(maps.grid.count(), nan);
   std::vector<std::size_t> open;
@@ -94,9 +88,8 @@ std::vector<double> passed(const RunMaps& maps, const std::vector<Crown>& crowns
     head[i] = std::max(here, 0.0);
     open.push_back(i);
   };
-  for (std::size_t i = 0; i < head.size(); ++i) {
+  for (std::size_t i = 0; i < head.size(); ++i)
     if (maps.initial_thickness[i] > 0) reach(i, true);
-  }
   while (!open.empty()) {
     const std::size_t here = open.back();
     open.pop_back();
@@ -139,9 +132,8 @@ std::vector<ReachCone> reach_cones(const RunMaps& maps, double volume, double fo
   }
   if (options.angle) wanted.insert(wanted.begin(), {"angle_deg", std::tan(*options.angle * std::numbers::pi / 180)});
   std::vector<ReachCone> cones;
-  for (const auto& [name, tangent] : wanted) {
+  for (const auto& [name, tangent] : wanted)
     if (auto cone = cone_of(maps, name, tangent, footprint)) cones.push_back(std::move(*cone));
-  }
   return cones;
 }
 

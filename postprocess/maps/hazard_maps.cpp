@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/maps/gis.hpp"
+#include "postprocess/maps/maps.hpp"
 
 #include <cmath>
 #include <limits>
@@ -8,11 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "common/gis/geotiff.hpp"
-#include "common/gis/outlines.hpp"
 #include "common/qgis/style.hpp"
-#include "postprocess/fields/styles.hpp"
-#include "postprocess/maps/geotiff.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
@@ -94,37 +91,32 @@ void write_buildings(const fs::path& folder, const Run& run, const Hazard& hazar
   write_outlines(files.back(), run.maps.grid.crs_wkt, layers);
 }
 
-class HazardWriter : public Writer {
- public:
-  std::string name() const override { return "hazard maps"; }
-  std::vector<std::string> names() const override {
-    return {"maps/intensity.tif",  "maps/intensity.qml", "maps/reach_cone.tif",
-            "maps/reach_cone.qml", "maps/reach.gpkg",    "maps/buildings.gpkg"};
-  }
-  Files write(const Job& job) const override { return write_hazard_maps(folder_of(job, "maps"), job.run, job.hazard); }
-};
-
-class BuildingsWriter : public Writer {
- public:
-  std::string name() const override { return "buildings"; }
-  bool wanted(const Job& job) const override { return !job.hazard.buildings.empty(); }
-  std::vector<std::string> names() const override { return {"buildings.csv"}; }
-  Files write(const Job& job) const override {
-    return {write_file(job, "buildings.csv", buildings_table(job.hazard.buildings))};
-  }
-};
-
-}  // namespace
-
-std::shared_ptr<Writer> hazard_writer() { return std::make_shared<HazardWriter>(); }
-std::shared_ptr<Writer> buildings_writer() { return std::make_shared<BuildingsWriter>(); }
-
+/// Writes what there is of intensity.tif, reach_cone.tif (the first cone), each with its style, reach.gpkg (the outline
+/// of every cone, `angle_deg`, `h_over_l`) and buildings.gpkg (layers `buildings`, `obstacles`). Returns the files.
 std::vector<fs::path> write_hazard_maps(const fs::path& folder, const Run& run, const Hazard& hazard) {
   std::vector<fs::path> files;
   if (hazard.intensity) write_intensity(folder, run, *hazard.intensity, files);
   if (!hazard.cones.empty()) write_reach(folder, run, hazard.cones, files);
   if (!hazard.buildings.empty()) write_buildings(folder, run, hazard, files);
   return files;
+}
+
+}  // namespace
+
+Writer hazard_writer() {
+  return {.name = "hazard maps",
+          .names = {"maps/intensity.tif", "maps/intensity.qml", "maps/reach_cone.tif", "maps/reach_cone.qml",
+                    "maps/reach.gpkg", "maps/buildings.gpkg"},
+          .write = [](const Job& job) { return write_hazard_maps(folder_of(job, "maps"), job.run, job.hazard); }};
+}
+
+Writer buildings_writer() {
+  return {
+      .name = "buildings",
+      .names = {"buildings.csv"},
+      .write =
+          [](const Job& job) { return Files{write_file(job, "buildings.csv", buildings_table(job.hazard.buildings))}; },
+      .asked_for = [](const Job& job) { return !job.hazard.buildings.empty(); }};
 }
 
 std::vector<ProjectGroup> hazard_groups(const Hazard& hazard) {

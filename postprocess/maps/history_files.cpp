@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/maps/history_files.hpp"
+#include "postprocess/maps/maps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,20 +8,18 @@
 #include <fmt/format.h>
 
 #include "common/stage/identity.hpp"
-#include "postprocess/maps/nc_grid.hpp"
+#include "postprocess/maps/nc_file.hpp"
 #include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
 
-/// A place with its columns.
 struct PlaceColumns {
   std::string name;    ///< "bridge"
   std::string prefix;  ///< of its columns: "gauge_bridge_"
   std::vector<const HistoryColumn*> columns;
 };
 
-/// The places of a kind, in the order of their columns.
 std::vector<PlaceColumns> places_of(const RunHistory& history, const std::string& kind) {
   std::vector<PlaceColumns> places;
   for (const HistoryColumn& column : history.columns) {
@@ -39,20 +37,12 @@ std::string table_of(const RunHistory& history, const std::string& kind, const s
   std::string text = "time_s," + kind;
   for (const HistoryColumn* column : places.front().columns)
     text += "," + column->name.substr(places.front().prefix.size());
-  for (std::size_t row = 0; row < time.size(); ++row) {
+  for (std::size_t row = 0; row < time.size(); ++row)
     for (const PlaceColumns& place : places) {
       text += fmt::format("\n{:.9g},{}", time[row], place.name);
       for (const HistoryColumn* column : place.columns) text += fmt::format(",{:.9g}", column->values[row]);
     }
-  }
   return text + "\n";
-}
-
-/// A name that CF takes: letters, digits and underscores, a letter first.
-std::string cf_name(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  return name;
 }
 
 void describe_history(Nc& nc, const Run& run) {
@@ -89,25 +79,21 @@ std::string history_table(const RunHistory& history) {
   return text + "\n";
 }
 
-class HistoryWriter : public Writer {
- public:
-  std::string name() const override { return "history"; }
-  std::vector<std::string> names() const override {
-    return {"history.csv", "history.nc", "gauges.csv", "sections.csv"};
-  }
-  std::vector<std::string> outdated() const override { return {"gauges.csv", "sections.csv"}; }
-  Files write(const Job& job) const override {
-    Files files{write_file(job, "history.csv", history_table(job.run.history)),
-                write_file(job, "history.nc", history_netcdf(job.run, job.options.start_time))};
-    for (const auto& [kind, rows] : place_tables(job.run.history))
-      files.push_back(write_file(job, kind + "s.csv", rows));
-    return files;
-  }
-};
-
 }  // namespace
 
-std::shared_ptr<Writer> history_writer() { return std::make_shared<HistoryWriter>(); }
+Writer history_writer() {
+  return {.name = "history",
+          .names = {"history.csv", "history.nc", "gauges.csv", "sections.csv"},
+          .write =
+              [](const Job& job) {
+                Files files{write_file(job, "history.csv", history_table(job.run.history)),
+                            write_file(job, "history.nc", history_netcdf(job.run, job.options.start_time))};
+                for (const auto& [kind, rows] : place_tables(job.run.history))
+                  files.push_back(write_file(job, kind + "s.csv", rows));
+                return files;
+              },
+          .outdated = std::vector<std::string>{"gauges.csv", "sections.csv"}};
+}
 
 std::vector<std::pair<std::string, std::string>> place_tables(const RunHistory& history) {
   std::vector<std::pair<std::string, std::string>> tables;
@@ -129,7 +115,7 @@ std::string history_netcdf(const Run& run, const std::string& start) {
     std::vector<std::string> taken{"time"};
     for (const HistoryColumn& column : run.history.columns) {
       if (&column == time) continue;
-      std::string name = cf_name(column.name);
+      std::string name = nc_name(column.name);
       while (std::find(taken.begin(), taken.end(), name) != taken.end()) name += "_";  // "a-b" after "a_b"
       taken.push_back(name);
       variables.emplace_back(define_column(nc, dimension, column, name), &column);

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/options/options.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <functional>
 #include <regex>
-#include <utility>
 
 namespace talus::postprocess {
 namespace {
@@ -23,15 +20,6 @@ bool is_date(const std::string& text) {
   return day.ok() && number(1) > 1582 && number(4) < 24 && number(5) < 60 && number(6) < 60;
 }
 
-/// This function declares that the limits of the classes rise, and that a map can show so many.
-void need_classes(recipe::Visitor& v, const std::vector<double>& classes) {
-  v.needs(std::adjacent_find(classes.begin(), classes.end(), std::greater_equal<>()) == classes.end(),
-          {"[postprocess] classes_m does not rise", "classes are given by their lower limits",
-           "Sort the limits, each once"});
-  v.needs(classes.size() <= 9, {"[postprocess] classes_m has " + std::to_string(classes.size()) + " classes",
-                                "nobody tells more than 9 shades apart on a map", "Give 9 limits or fewer"});
-}
-
 }  // namespace
 
 bool Options::writes(std::string_view word) const { return std::ranges::find(outputs, word) != outputs.end(); }
@@ -44,7 +32,7 @@ void Options::describe(recipe::Visitor& v) {
             "lower limits of the map's thickness classes, rising; empty: four to six of 0.1 0.5 1 2 5 10 25 50 100 200 "
             "500 that "
             "fit the thickest, and finer ones below them where it is thin");
-  need_classes(v, classes);
+  need_classes(v, "[postprocess] classes_m", classes);
   v.names("accept", accept, {"change-outside-slide", "swapped-surveys"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.text("institution", institution, "who made this, for the NetCDF file");
@@ -56,7 +44,7 @@ void Options::describe(recipe::Visitor& v) {
          "line along which run-out is measured (any vector format), from either end; empty: found as the path of the "
          "centre of mass");
   v.names(
-      "outputs", outputs, writers.words(),
+      "outputs", outputs, output_words(),
       "what is written besides maps, tables and scores: report.html, with a view in 3-D (report-3d); surface, terrain "
       "and points over time for ParaView (3d/); a film (mp4, gif; needs ffmpeg); peaks as AvaFrame names them "
       "(avaframe-tif, avaframe-asc)");

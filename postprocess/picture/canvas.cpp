@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/picture/canvas.hpp"
+#include "postprocess/picture/picture.hpp"
 
 #include <cairo.h>
 
-#include <algorithm>
 #include <cstring>
 #include <new>
 #include <stdexcept>

@@ -1,19 +1,16 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/picture/furniture.hpp"
-
-#include "common/gis/crs.hpp"
+#include "postprocess/picture/picture.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
-#include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "common/map/sum.hpp"
-#include "postprocess/picture/search_words.hpp"
+#include "common/gis/crs.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -26,35 +23,27 @@ std::string grouped(double value) {
   return talus::grouped(fmt::format("{:.0f}", std::abs(value) < 0.5 ? 0.0 : value), "\u2009");
 }
 
-struct FittedText {
-  std::string words;
-  TextStyle style;
-};
-
-/// Shrink a text by a fifth at most until it fits, then cut its end off.
-FittedText fitting(Canvas& canvas, std::string words, TextStyle style, double width) {
+/// Draws a text that is shrunk by a fifth at most until it fits; then its end is cut off.
+void draw_fitting(Canvas& canvas, std::string words, double x, double y, TextStyle style, double width) {
   const double least = 0.8 * style.size;
   while (style.size > least && canvas.text_width(words, style) > width) style.size -= 0.5;
-  if (canvas.text_width(words, style) <= width) return {words, style};
-  while (!words.empty() && canvas.text_width(words + "\u2026", style) > width) {
-    while (!words.empty() && (static_cast<unsigned char>(words.back()) & 0xC0U) == 0x80U) words.pop_back();  // a whole
-    if (!words.empty()) words.pop_back();  // character
+  if (canvas.text_width(words, style) > width) {
+    while (!words.empty() && canvas.text_width(words + "\u2026", style) > width) {
+      while (!words.empty() && (static_cast<unsigned char>(words.back()) & 0xC0U) == 0x80U)
+        words.pop_back();                    // a whole
+      if (!words.empty()) words.pop_back();  // character
+    }
+    words += "\u2026";
   }
-  return {words + "\u2026", style};
-}
-
-void draw_fitting(Canvas& canvas, const std::string& words, double x, double y, const TextStyle& style, double width) {
-  const auto fitted = fitting(canvas, words, style, width);
-  canvas.text(fitted.words, x, y, fitted.style);
+  canvas.text(words, x, y, style);
 }
 
 std::string key_numbers(const PictureInput& input) {
   const auto& score = input.score;
   auto words = volume_words(input.run.summary.volume_released) + " released";
   const auto add = [&](const std::string& more) { words += "  \u00b7  " + more; };
-  if (const auto runout = score.number("runout_m")) {
+  if (const auto runout = score.number("runout_m"))
     add(fmt::format("run-out {} m (H/L {:.2f})", grouped(*runout), score.number("h_over_l").value_or(0)));
-  }
   const auto deposit = score.number("deposit_csi"), footprint = score.number("footprint_csi"),
              rmse = score.number("thickness_rmse_m");
   if (deposit && footprint)
@@ -65,11 +54,6 @@ std::string key_numbers(const PictureInput& input) {
     add(fmt::format("CSI footprint {:.2f}", *footprint));
   if (rmse) add(fmt::format("RMSE {:.1f} m", *rmse));
   return words;
-}
-
-void draw_style(Canvas& canvas, const LineStyle& style, double x, double y, double width) {
-  if (style.casing.width > 0) canvas.line({{x, y}, {x + width, y}}, style.casing);
-  canvas.line({{x, y}, {x + width, y}}, style.pen);
 }
 
 /// Writes one thing below the other.
@@ -89,7 +73,9 @@ class Column {
     y_ += 36;
   }
   void line(const LineStyle& style, const std::string& words) {
-    draw_style(canvas_, style, box_.x, y_ + 16, 64);
+    const Pixels sample{{box_.x, y_ + 16}, {box_.x + 64, y_ + 16}};
+    if (style.casing.width > 0) canvas_.line(sample, style.casing);
+    canvas_.line(sample, style.pen);
     draw_fitting(canvas_, words, box_.x + 84, y_ + 24, {.size = 23, .colour = ink}, box_.width - 84);
     y_ += 38;
   }
@@ -108,9 +94,9 @@ class Column {
 };
 
 void draw_hazard_legend(Column& column, const Hazard& hazard) {
-  if (!hazard.buildings.empty()) column.line(building_style(), "Buildings");
+  if (!hazard.buildings.empty()) column.line(building_style, "Buildings");
   if (!hazard.cones.empty())
-    column.line(reach_style(), fmt::format("Angle of reach, H/L = {:.2f}", hazard.cones.front().tangent));
+    column.line(reach_style, fmt::format("Angle of reach, H/L = {:.2f}", hazard.cones.front().tangent));
 }
 
 void draw_legend(Column& column, const PictureInput& input, const std::vector<double>& limits, double interval) {
@@ -125,15 +111,15 @@ void draw_legend(Column& column, const PictureInput& input, const std::vector<do
     const auto& survey = *input.survey;
     const bool has_deposit = !survey.deposit.empty();
     if (has_deposit)
-      column.line(survey_style(), fmt::format("{}: deposit > {:g} m", survey.name, options.deposit_threshold));
+      column.line(survey_style, fmt::format("{}: deposit > {:g} m", survey.name, options.deposit_threshold));
     if (!survey.footprint.empty()) {
       const auto limit = fmt::format(" > {:g} m", survey.footprint_threshold);
       const auto what = !survey.polygons.empty() ? "" : (survey.footprint_is_change ? ": |change|" : ": peak") + limit;
-      column.line(has_deposit ? survey_footprint_style() : survey_style(), survey.name + what);
+      column.line(has_deposit ? survey_footprint_style : survey_style, survey.name + what);
     }
   }
-  if (!search) column.line(footprint_style(), fmt::format("Simulated: peak > {:g} m", options.footprint_threshold));
-  column.line(release_style(), search ? "Ground that was looked at" : "Release");
+  if (!search) column.line(footprint_style, fmt::format("Simulated: peak > {:g} m", options.footprint_threshold));
+  column.line(release_style, search ? "Ground that was looked at" : "Release");
   if (input.hazard != nullptr) draw_hazard_legend(column, *input.hazard);
   if (interval > 0) column.line({{{}, 0, {}, 1}, contour_pen(true)}, fmt::format("Contours every {:g} m", interval));
 }
@@ -180,9 +166,8 @@ void draw_north_arrow(Canvas& canvas, double x, double y) {
 
 void draw_scale_bar(Canvas& canvas, const View& view, double x, double y, double room) {
   const double length = round_below(room / view.scale()), width = length * view.scale();
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4; ++i)
     canvas.fill(Box{x + 0.25 * i * width, y, 0.25 * width, 13}, i % 2 == 0 ? ink : Colour{1, 1, 1});
-  }
   canvas.frame({x, y, width, 13}, {ink, 1.5, {}, 1});
   const bool kilometres = length >= 2000;
   const auto words = [&](double metres) { return fmt::format("{:g}", kilometres ? metres / 1000 : metres); };
@@ -199,6 +184,17 @@ std::vector<double> ticks(double low, double high, double pixels) {
   const double first = std::ceil(low / step);
   for (int n = 0; (first + n) * step <= high; ++n) places.push_back((first + n) * step);
   return places;
+}
+
+/// A number that the search has left in run.h5, as stability.NAME.
+std::optional<double> searched(const PictureInput& input, const std::string& name) {
+  const auto& facts = input.run.summary.provenance;
+  const auto fact = std::ranges::find(facts, "stability." + name, [](const auto& f) { return f.first; });
+  if (fact == facts.end()) return {};
+  char* end = nullptr;
+  const double value = std::strtod(fact->second.c_str(), &end);
+  if (end == fact->second.c_str()) return {};
+  return value;
 }
 
 }  // namespace
@@ -268,6 +264,30 @@ void draw_footer(Canvas& canvas, const PictureInput& input, double x, double y) 
       crs_name(input.run.maps.grid.crs_wkt), input.run.maps.grid.cell, grouped(static_cast<double>(s.particles)),
       s.version);
   canvas.text(words, x, y, {.size = 19, .colour = soft_ink});
+}
+
+bool shows_search(const PictureInput& input) { return !input.instant && !input.run.maps.critical_thickness.empty(); }
+
+std::string search_line(const PictureInput& input) {
+  const auto factor = searched(input, "factor_of_safety"), volume = searched(input, "critical_volume_m3");
+  const std::string ground = volume_words(input.run.summary.volume_released);
+  if (!factor || !volume) return "no factor of safety found  \u00b7  " + ground + " of ground";
+  return fmt::format("factor of safety {:.2f}  \u00b7  {} of {} fail first", *factor, volume_words(*volume), ground);
+}
+
+std::vector<std::pair<std::string, std::string>> search_numbers(const PictureInput& input) {
+  std::vector<std::pair<std::string, std::string>> rows{{"Ground", volume_words(input.run.summary.volume_released)}};
+  const auto row = [&](const char* name, const char* words, const auto& text) {
+    if (const auto value = searched(input, name)) rows.emplace_back(words, text(*value));
+  };
+  const auto factor = [](double f) { return fmt::format("{:.3f}", f); };
+  row("factor_of_safety", "Factor of safety", factor);
+  row("lower_factor", "Rests at", factor);
+  row("upper_factor", "Fails at", factor);
+  row("critical_volume_m3", "Fails first", volume_words);
+  row("critical_area_m2", "Its area", [](double area) { return fmt::format("{:.2f} ha", area / 1e4); });
+  row("critical_depth_m", "Deepest", [](double depth) { return fmt::format("{:.1f}\u2009m", depth); });
+  return rows;
 }
 
 }  // namespace talus::postprocess

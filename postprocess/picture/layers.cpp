@@ -1,24 +1,86 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/picture/layers.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "common/map/isolines.hpp"
-#include "common/map/polygon.hpp"
-#include "postprocess/picture/hillshade.hpp"
+#include "postprocess/picture/picture.hpp"
 
 namespace talus::postprocess {
 namespace {
 
-constexpr Colour white{1, 1, 1};
+double shade(double slope_x, double slope_y) {
+  constexpr double height = 45 * std::numbers::pi / 180;
+  const double length = std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+  const double aspect = std::atan2(-slope_x, -slope_y);  // downslope, clockwise from north
+  double sum = 0, weights = 0;
+  for (const double azimuth_deg : {225.0, 270.0, 315.0, 360.0}) {
+    const double azimuth = azimuth_deg * std::numbers::pi / 180;
+    const double light = (-slope_x * std::sin(azimuth) * std::cos(height) -
+                          slope_y * std::cos(azimuth) * std::cos(height) + std::sin(height)) /
+                         length;
+    const double across = std::sin(aspect - azimuth);
+    const double weight = across * across + 0.15;  // the constant keeps some of the light that falls straight on
+    sum += weight * std::max(light, 0.0);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+void stretch(std::vector<double>& shades) {
+  std::vector<double> sorted;
+  std::copy_if(shades.begin(), shades.end(), std::back_inserter(sorted), [](double s) { return std::isfinite(s); });
+  if (sorted.empty()) return;
+  std::sort(sorted.begin(), sorted.end());
+  const double low = sorted[sorted.size() / 50], high = sorted[sorted.size() - 1 - sorted.size() / 50];
+  const double middle = 0.5 * (low + high), span = std::max(high - low, 0.12);  // a plain stays plain
+  for (double& s : shades) s = std::clamp(0.5 + (s - middle) / span, 0.0, 1.0);
+}
+
+constexpr Colour place_edge{0.10, 0.11, 0.13}, place_fill{0.95, 0.76, 0.31};
+constexpr std::size_t most_named = 12;
+constexpr double dot = 8, letters = 22;  // [px]
+
+/// A ring on the canvas; a circle for a point.
+Pixels shape_of(const std::vector<std::array<double, 2>>& ring, const View& view) {
+  Pixels shape;
+  if (ring.size() > 1) {
+    for (const auto& [x, y] : ring) shape.push_back(view.pixel(x, y));
+    shape.push_back(shape.front());
+    return shape;
+  }
+  const auto [x, y] = view.pixel(ring[0][0], ring[0][1]);
+  for (int k = 0; k <= 24; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 24;
+    shape.push_back({x + dot * std::cos(angle), y + dot * std::sin(angle)});
+  }
+  return shape;
+}
+
+bool reaches_into(const MapPlace& place, const Window& window) {
+  return std::any_of(place.rings.begin(), place.rings.end(), [&](const auto& ring) {
+    return std::any_of(ring.begin(), ring.end(), [&](const auto& at) {
+      return at[0] > window.west && at[0] < window.east && at[1] > window.south && at[1] < window.north;
+    });
+  });
+}
+
+/// The easternmost place of the first ring, where the name begins, turned to the left where it would leave the view.
+void draw_name(Canvas& canvas, const View& view, const MapPlace& place) {
+  const auto& ring = place.rings[0];
+  const auto east =
+      *std::max_element(ring.begin(), ring.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
+  const auto [x, y] = view.pixel(east[0], east[1]);
+  TextStyle style{.size = letters, .bold = true, .colour = place_edge, .halo = 5};
+  const std::string name = name_of(place);
+  if (x + dot + 6 + canvas.text_width(name, style) > view.box.x + view.box.width) style.align = Align::right;
+  canvas.text(name, style.align == Align::right ? x - dot - 6 : x + dot + 6, y + 0.35 * letters, style);
+}
+
 constexpr Colour beyond_domain{0.93, 0.94, 0.95};
 
 double length(const Pixels& points) {
@@ -29,14 +91,13 @@ double length(const Pixels& points) {
 }
 
 void draw(Canvas& canvas, const View& view, const std::vector<Polyline>& lines, const LineStyle& style) {
-  for (const auto& pen : {style.casing, style.pen}) {
+  for (const auto& pen : {style.casing, style.pen})
     for (const auto& line : lines) {
       const auto points = on_canvas(view, line);
       auto solid = pen;
       solid.dashes.clear();  // a ring of two dashes or fewer is a crumb, not an outline
       if (pen.width > 0) canvas.line(points, length(points) < 90 ? solid : pen);
     }
-  }
 }
 
 /// The elevation along a contour, upright, where the line is straightest within the frame.
@@ -76,13 +137,12 @@ void label_contour(Canvas& canvas, const View& view, const Polyline& line, doubl
 std::vector<double> elevations(const View& view, const RunMaps& maps) {
   std::vector<double> inside;
   const auto& grid = maps.grid;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const double x = grid.x(column), y = grid.y(row), z = maps.before[grid.index(column, row)];
-      if (std::isfinite(z) && x >= view.window.west && x <= view.window.east && y >= view.window.south &&
-          y <= view.window.north)
-        inside.push_back(z);
-    }
+  for (std::size_t i = 0; i < grid.count(); ++i) {
+    const auto [column, row] = grid.cell_of(i);
+    const double x = grid.x(column), y = grid.y(row), z = maps.before[i];
+    if (std::isfinite(z) && x >= view.window.west && x <= view.window.east && y >= view.window.south &&
+        y <= view.window.north)
+      inside.push_back(z);
   }
   return inside;
 }
@@ -95,6 +155,59 @@ double quantile(std::vector<double>& all, double part) {
 }
 
 }  // namespace
+
+std::vector<double> hillshade(const MapGrid& grid, const std::vector<double>& elevation) {
+  std::vector<double> shades(elevation.size(), nan);
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const double own = elevation[grid.index(column, row)];
+      if (std::isnan(own)) continue;
+      const auto z = [&](int dx, int dy) {  // of a neighbour; the cell's own where there is none
+        const double there =
+            elevation[grid.index(std::clamp(column + dx, 0, grid.columns - 1), std::clamp(row + dy, 0, grid.rows - 1))];
+        return std::isnan(there) ? own : there;
+      };
+      const double east = z(1, -1) + 2 * z(1, 0) + z(1, 1), west = z(-1, -1) + 2 * z(-1, 0) + z(-1, 1);
+      const double north = z(-1, 1) + 2 * z(0, 1) + z(1, 1), south = z(-1, -1) + 2 * z(0, -1) + z(1, -1);
+      shades[grid.index(column, row)] = shade((east - west) / (8 * grid.cell), (north - south) / (8 * grid.cell));
+    }
+  stretch(shades);
+  return shades;
+}
+
+double sample(const MapGrid& grid, const std::vector<double>& values, double x, double y, double missing) {
+  const double u = std::clamp((x - grid.west) / grid.cell - 0.5, 0.0, grid.columns - 1.0);
+  const double v = std::clamp((y - grid.south) / grid.cell - 0.5, 0.0, grid.rows - 1.0);
+  const int column = std::min(static_cast<int>(u), std::max(grid.columns - 2, 0));
+  const int row = std::min(static_cast<int>(v), std::max(grid.rows - 2, 0));
+  const double fx = u - column, fy = v - row;
+  double sum = 0;
+  for (const int dy : {0, 1})
+    for (const int dx : {0, 1}) {
+      const double weight = (dx ? fx : 1 - fx) * (dy ? fy : 1 - fy);
+      if (weight == 0) continue;
+      const double value = values[grid.index(column + dx, row + dy)];
+      sum += weight * (std::isnan(value) ? missing : value);
+    }
+  return sum;
+}
+
+std::string name_of(const MapPlace& place) {
+  const auto space = place.words.find(' ');
+  return space == std::string::npos ? place.words : place.words.substr(space + 1);
+}
+
+void draw_places(Canvas& canvas, const View& view, const std::vector<MapPlace>& places) {
+  for (const MapPlace& place : places) {
+    if (!reaches_into(place, view.window)) continue;
+    for (const auto& ring : place.rings) {
+      const Pixels shape = shape_of(ring, view);
+      canvas.fill(shape, place_fill);
+      canvas.line(shape, {place_edge, 2.5, {}, 1});
+    }
+    if (places.size() <= most_named) draw_name(canvas, view, place);
+  }
+}
 
 Colour scaled(const Colour& c, double factor) { return {c.r * factor, c.g * factor, c.b * factor}; }
 
@@ -111,21 +224,20 @@ Pixels on_canvas(const View& view, const Polyline& line) {
 
 std::vector<Polyline> rings(const std::vector<MapPolygon>& polygons) {
   std::vector<Polyline> lines;
-  for (const auto& polygon : polygons) {
+  for (const auto& polygon : polygons)
     for (auto ring : polygon.rings) {
       if (!ring.empty()) ring.push_back(ring.front());
       lines.push_back(std::move(ring));
     }
-  }
   return lines;
 }
 
-LineStyle survey_style() { return {{white, 7, {}, 0.9}, {{0.0, 0.30, 0.70}, 4, {15, 9}, 1}}; }
-LineStyle survey_footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.0, 0.30, 0.70}, 1.8, {5, 4}, 1}}; }
-LineStyle footprint_style() { return {{white, 3.6, {}, 0.6}, {{0.12, 0.12, 0.14}, 1.7, {}, 1}}; }
-LineStyle release_style() { return {{white, 6, {}, 0.85}, {{0.0, 0.45, 0.36}, 3.2, {}, 1}}; }
-LineStyle building_style() { return {{white, 4.4, {}, 0.8}, {{0.10, 0.10, 0.10}, 2.2, {}, 1}}; }
-LineStyle reach_style() { return {{white, 4.4, {}, 0.7}, {{0.55, 0.10, 0.55}, 2.4, {10, 6}, 1}}; }
+std::vector<Polyline> footprint_lines(const Survey& survey) {
+  if (!survey.polygons.empty()) return rings(survey.polygons);
+  if (survey.footprint.empty()) return {};
+  return isolines(survey.grid, survey.footprint, survey.footprint_threshold, AtEdge::close);
+}
+
 Pen contour_pen(bool is_index) { return {{0.33, 0.36, 0.40}, is_index ? 1.5 : 0.9, {}, is_index ? 0.55 : 0.38}; }
 
 void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const std::vector<double>& limits) {
@@ -167,32 +279,26 @@ void draw_contours(Canvas& canvas, const View& view, const RunMaps& maps, const 
 
 void draw_hazard(Canvas& canvas, const View& view, const MapGrid& grid, const Hazard& hazard) {
   if (!hazard.cones.empty())
-    draw(canvas, view, isolines(grid, reached_cells(hazard.cones.front()), 0.5, AtEdge::close), reach_style());
-  for (const Building& building : hazard.buildings) draw(canvas, view, rings(building.parts), building_style());
+    draw(canvas, view, isolines(grid, reached_cells(hazard.cones.front()), 0.5, AtEdge::close), reach_style);
+  for (const Building& building : hazard.buildings) draw(canvas, view, rings(building.parts), building_style);
 }
 
 void draw_outlines(Canvas& canvas, const View& view, const RunMaps& maps, const PictureInput& input) {
   const auto& options = input.options;
   draw(canvas, view, isolines(maps.grid, maps.peak_thickness, options.footprint_threshold, AtEdge::close),
-       footprint_style());
+       footprint_style);
   const auto draw_release = [&] {
     draw(canvas, view, isolines(maps.grid, maps.initial_thickness, options.deposit_threshold, AtEdge::close),
-         release_style());
+         release_style);
   };
   if (!input.survey) return draw_release();
   const auto& survey = *input.survey;
-  const auto footprint = [&] {
-    return !survey.polygons.empty()
-               ? rings(survey.polygons)
-               : isolines(survey.grid, survey.footprint, survey.footprint_threshold, AtEdge::close);
-  };
-  if (!survey.footprint.empty()) {
-    draw(canvas, view, footprint(), survey.deposit.empty() ? survey_style() : survey_footprint_style());
-  }
+  if (!survey.footprint.empty())
+    draw(canvas, view, footprint_lines(survey), survey.deposit.empty() ? survey_style : survey_footprint_style);
   draw_release();
   if (survey.deposit.empty()) return;
   const auto lines = isolines(survey.grid, survey.deposit, options.deposit_threshold, AtEdge::close);
-  draw(canvas, view, lines, survey_style());
+  draw(canvas, view, lines, survey_style);
 }
 
 ContourLevels contour_levels(const View& view, const RunMaps& maps) {

@@ -7,13 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "postprocess/fields/classes.hpp"
 #include "postprocess/fields/fields.hpp"
-#include "postprocess/fields/styles.hpp"
 #include "postprocess/hazard/hazard.hpp"
-#include "postprocess/picture/hillshade.hpp"
-#include "postprocess/report/pack.hpp"
-#include "postprocess/report/parts.hpp"
+#include "postprocess/report/report.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -84,153 +80,149 @@ struct Layer {
   std::string about{};
 };
 
-class Layers {
- public:
-  Layers(const ReportInput& input, const Window& window, int& coarsest)
-      : input_(input), maps_(input.run.maps), window_(window), coarsest_(coarsest) {}
+/// 1, 2 or 5 times a power of ten that is at least `value`.
+double round_above(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * power >= value * (1 - 1e-12)) return step * power;
+  return 10 * power;
+}
+
+struct Layers {
+  const ReportInput& input;
+  const Window& window;
+  int& coarsest;
+  const RunMaps& maps = input.run.maps;
+  Json list = Json::array();
 
   Json build() {
     simulated();
-    if (input_.hazard != nullptr) of_hazard(*input_.hazard);
-    if (input_.survey) surveyed(*input_.survey);
-    return std::move(list_);
+    if (input.hazard != nullptr) of_hazard(*input.hazard);
+    if (input.survey) surveyed(*input.survey);
+    return std::move(list);
   }
 
- private:
   void add(Layer layer) {
-    auto raster = cut(layer.raster, window_);
+    auto raster = cut(layer.raster, window);
     const int factor = factor_for(raster.grid, cells_of_a_map);
-    coarsest_ = std::max(coarsest_, factor);
+    coarsest = std::max(coarsest, factor);
     raster = coarsened(raster, factor, layer.merge);
-    list_.push_back({{"id", layer.id},
-                     {"title", layer.title},
-                     {"unit", layer.unit},
-                     {"decimals", layer.decimals},
-                     {"about", layer.about},
-                     {"codes", layer.id == "agreement" || layer.id == "intensity"},
-                     {"classes", layer.classes},
-                     {"grid", grid_json(raster.grid)},
-                     {"data", packed(raster.values)}});
+    list.push_back({{"id", layer.id},
+                    {"title", layer.title},
+                    {"unit", layer.unit},
+                    {"decimals", layer.decimals},
+                    {"about", layer.about},
+                    {"codes", layer.id == "agreement" || layer.id == "intensity"},
+                    {"classes", layer.classes},
+                    {"grid", grid_json(raster.grid)},
+                    {"data", packed(raster.values)}});
   }
 
   Json thickness_classes(const std::vector<double>& values) const {
-    return classes(thickness_limits(input_.options.classes, values), Ramp::heat);
+    return classes(thickness_limits(input.options.classes, values), Ramp::heat);
   }
 
-  void simulated();
-  void of_run(const MapField& field);
-  void of_hazard(const Hazard& hazard);
-  void surveyed(const Survey& survey);
-  void difference(const Survey& survey, const OnSurveyGrid& simulated);
-  void agreement(const Survey& survey, const OnSurveyGrid& simulated);
-
-  const ReportInput& input_;
-  const RunMaps& maps_;
-  const Window& window_;
-  int& coarsest_;
-  Json list_ = Json::array();
-};
-
-void Layers::simulated() {
-  for (const MapField& field : map_fields) {
-    if (!field.optional) of_run(field);
+  void simulated() {
+    for (const MapField& field : map_fields)
+      if (!field.optional) of_run(field);
+    const auto deposit = thickness_classes(maps.deposit_thickness);
+    const std::vector<std::string> words = file_words(maps.deposit_of);
+    for (std::size_t r = 0; r < words.size(); ++r) {
+      const auto& [name, values] = maps.deposit_of[r];
+      add({"deposit_" + words[r], "Deposit from " + name, "m", deposit, values_raster(maps, values, true),
+           MergedCells::mean, 2, "The part of the deposit that came from this release, vertical."});
+    }
+    for (const MapField& field : map_fields)
+      if (field.optional) of_run(field);
   }
-  const auto deposit = thickness_classes(maps_.deposit_thickness);
-  const std::vector<std::string> words = file_words(maps_.deposit_of);
-  for (std::size_t r = 0; r < words.size(); ++r) {
-    const auto& [name, values] = maps_.deposit_of[r];
-    add({"deposit_" + words[r], "Deposit from " + name, "m", deposit, values_raster(maps_, values, true),
-         MergedCells::mean, 2, "The part of the deposit that came from this release, vertical."});
-  }
-  for (const MapField& field : map_fields) {
-    if (field.optional) of_run(field);
-  }
-}
 
-void Layers::of_hazard(const Hazard& hazard) {
-  if (const auto& map = hazard.intensity) {
-    auto list = Json::array();
-    for (const IntensityClass& one : map->classes)
-      list.push_back(class_json(one.code - 0.5, one.code + 0.5, one.colour, one.name + ": " + one.words));
-    add({"intensity",
-         "Intensity, " + map->guideline,
-         "",
-         std::move(list),
-         {maps_.grid, map->codes},
-         MergedCells::largest,
-         0,
-         "Classes by " + map->source + "."});
-  }
-  if (hazard.cones.empty()) return;
-  const ReachCone& cone = hazard.cones.front();
-  add({"reach",
-       "Height of the energy line",
-       "m",
-       classes(thickness_limits({}, cone.head), Ramp::sea),
-       {maps_.grid, cone.head},
-       MergedCells::largest,
-       1,
-       fmt::format("Above the ground, of a line that falls by H/L = {:.2f} from the release.", cone.tangent)});
-}
-
-void Layers::of_run(const MapField& field) {
-  const MapLayer& layer = field.layer;
-  if (layer.id[0] == '\0' || (maps_.*(field.values)).empty()) return;
-  const auto limits = map_limits(field, maps_, input_.options.classes);
-  const bool time = field.product.classes == MapClasses::time;
-  add({layer.id, layer.title, layer.unit, time ? time_classes(limits) : classes(limits, layer.ramp),
-       field_raster(maps_, field), layer.merge, layer.decimals,
-       fmt::format(fmt::runtime(layer.about), maps_.threshold)});
-}
-
-void Layers::surveyed(const Survey& survey) {
-  const auto simulated = bring_to_survey_grid(maps_, survey);
-  if (!survey.deposit.empty()) {
-    add({"surveyed",
-         "Deposit, " + survey.name,
+  void of_hazard(const Hazard& hazard) {
+    if (const auto& map = hazard.intensity) {
+      auto shades = Json::array();
+      for (const IntensityClass& one : map->classes)
+        shades.push_back(class_json(one.code - 0.5, one.code + 0.5, one.colour, one.name + ": " + one.words));
+      add({"intensity",
+           "Intensity, " + map->guideline,
+           "",
+           std::move(shades),
+           {maps.grid, map->codes},
+           MergedCells::largest,
+           0,
+           "Classes by " + map->source + "."});
+    }
+    if (hazard.cones.empty()) return;
+    const ReachCone& cone = hazard.cones.front();
+    add({"reach",
+         "Height of the energy line",
          "m",
-         thickness_classes(maps_.deposit_thickness),
-         {survey.grid, survey.deposit},
-         MergedCells::mean,
-         2,
-         survey.deposit_is_change ? "Rise of the surface between the two surveys, vertical." : "Thickness, vertical."});
-    difference(survey, simulated);
+         classes(thickness_limits({}, cone.head), Ramp::sea),
+         {maps.grid, cone.head},
+         MergedCells::largest,
+         1,
+         fmt::format("Above the ground, of a line that falls by H/L = {:.2f} from the release.", cone.tangent)});
   }
-  if (!survey.footprint.empty()) agreement(survey, simulated);
-}
 
-void Layers::difference(const Survey& survey, const OnSurveyGrid& simulated) {
-  const double limit = input_.options.deposit_threshold;
-  Raster raster{survey.grid, std::vector<double>(survey.grid.count(), nan)};
-  for (std::size_t i = 0; i < raster.values.size(); ++i)
-    if (simulated.deposit[i] > limit || survey.deposit[i] > limit)
-      raster.values[i] = simulated.deposit[i] - survey.deposit[i];
-  const auto limits = difference_limits(raster.values);
-  add({"difference", "Difference, simulated \u2212 " + survey.name, "m", difference_classes(limits), std::move(raster),
-       MergedCells::mean, 2,
-       fmt::format("Where either deposit is thicker than {:g} m: red where the simulation has more, blue where it has "
-                   "less.",
-                   limit)});
-}
-
-void Layers::agreement(const Survey& survey, const OnSurveyGrid& simulated) {
-  Raster raster{survey.grid, std::vector<double>(survey.grid.count(), nan)};
-  for (std::size_t i = 0; i < raster.values.size(); ++i) {
-    const bool here = simulated.peak[i] > input_.options.footprint_threshold;
-    const bool there = survey.footprint[i] > survey.footprint_threshold;
-    if (std::isnan(survey.footprint[i]) || !(here || there)) continue;
-    raster.values[i] = here && there ? both : here ? simulation_only : survey_only;
+  void of_run(const MapField& field) {
+    const MapLayer& layer = field.layer;
+    if (layer.id[0] == '\0' || (maps.*(field.values)).empty()) return;
+    const auto limits = map_limits(field, maps, input.options.classes);
+    const bool time = field.product.classes == MapClasses::time;
+    add({layer.id, layer.title, layer.unit, time ? time_classes(limits) : classes(limits, layer.ramp),
+         field_raster(maps, field), layer.merge, layer.decimals,
+         fmt::format(fmt::runtime(layer.about), maps.threshold)});
   }
-  add({"agreement", "Footprint agreement", "", agreement_classes(survey.name), std::move(raster), MergedCells::largest,
-       0,
-       fmt::format("Footprint: peak thickness above {:g} m. The score counts these areas.",
-                   input_.options.footprint_threshold)});
-}
+
+  void surveyed(const Survey& survey) {
+    const auto simulated = bring_to_survey_grid(maps, survey);
+    if (!survey.deposit.empty()) {
+      add({"surveyed",
+           "Deposit, " + survey.name,
+           "m",
+           thickness_classes(maps.deposit_thickness),
+           {survey.grid, survey.deposit},
+           MergedCells::mean,
+           2,
+           survey.deposit_is_change ? "Rise of the surface between the two surveys, vertical."
+                                    : "Thickness, vertical."});
+      difference(survey, simulated);
+    }
+    if (!survey.footprint.empty()) agreement(survey, simulated);
+  }
+
+  void difference(const Survey& survey, const OnSurveyGrid& simulated) {
+    const double limit = input.options.deposit_threshold;
+    Raster raster{survey.grid, std::vector<double>(survey.grid.count(), nan)};
+    for (std::size_t i = 0; i < raster.values.size(); ++i)
+      if (simulated.deposit[i] > limit || survey.deposit[i] > limit)
+        raster.values[i] = simulated.deposit[i] - survey.deposit[i];
+    const auto limits = difference_limits(raster.values);
+    add({"difference", "Difference, simulated \u2212 " + survey.name, "m", difference_classes(limits),
+         std::move(raster), MergedCells::mean, 2,
+         fmt::format(
+             "Where either deposit is thicker than {:g} m: red where the simulation has more, blue where it has "
+             "less.",
+             limit)});
+  }
+
+  void agreement(const Survey& survey, const OnSurveyGrid& simulated) {
+    Raster raster{survey.grid, std::vector<double>(survey.grid.count(), nan)};
+    for (std::size_t i = 0; i < raster.values.size(); ++i) {
+      const bool here = simulated.peak[i] > input.options.footprint_threshold;
+      const bool there = survey.footprint[i] > survey.footprint_threshold;
+      if (std::isnan(survey.footprint[i]) || !(here || there)) continue;
+      raster.values[i] = here && there ? both : here ? simulation_only : survey_only;
+    }
+    add({"agreement", "Footprint agreement", "", agreement_classes(survey.name), std::move(raster),
+         MergedCells::largest, 0,
+         fmt::format("Footprint: peak thickness above {:g} m. The score counts these areas.",
+                     input.options.footprint_threshold)});
+  }
+};
 
 }  // namespace
 
 Json layers_json(const ReportInput& input, const Window& window, int& coarsest) {
-  return Layers(input, window, coarsest).build();
+  return Layers{input, window, coarsest}.build();
 }
 
 Json frames_json(const ReportInput& input, const Window& window, int& coarsest) {
@@ -256,29 +248,12 @@ Json frames_json(const ReportInput& input, const Window& window, int& coarsest) 
   return json;
 }
 
-Json ground_json(const ReportInput& input, const Window& window, int& coarsest) {
-  const auto& maps = input.run.maps;
-  const auto ground = cut({maps.grid, maps.before}, window);
+Raster shown_ground(const ReportInput& input, const Window& window, int& coarsest) {
+  const auto ground = cut({input.run.maps.grid, input.run.maps.before}, window);
   const int factor = factor_for(ground.grid, cells_of_a_map);
   coarsest = std::max(coarsest, factor);
-  const auto elevation = coarsened(ground, factor, MergedCells::mean);
-  return {{"grid", grid_json(elevation.grid)},
-          {"elevation", packed(elevation.values)},
-          {"shade", packed(hillshade(elevation.grid, elevation.values))}};
+  return coarsened(ground, factor, MergedCells::mean);
 }
-
-namespace {
-
-/// 1, 2 or 5 times a power of ten that is at least `value`.
-double round_above(double value) {
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (step * power >= value * (1 - 1e-12)) return step * power;
-  }
-  return 10 * power;
-}
-
-}  // namespace
 
 std::vector<double> difference_limits(const std::vector<double>& differences) {
   std::vector<double> sizes;

@@ -3,28 +3,78 @@
 #include "postprocess/report/report.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <ctime>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "common/gis/crs.hpp"
+#include "common/map/raster.hpp"
+#include "common/recipe/used.hpp"
+#include "common/run/mobility.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
-#include "common/stage/input_file.hpp"
 #include "common/stage/stage.hpp"
-#include "postprocess/fields/window.hpp"
-#include "postprocess/report/filled_page.hpp"
-#include "postprocess/report/page.hpp"
-#include "postprocess/report/parts.hpp"
+#include "postprocess/hazard/hazard.hpp"
+#include "postprocess/picture/picture.hpp"
 #include "postprocess/writers/job.hpp"
 
 namespace talus::postprocess {
 namespace {
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+/// A thickness map read both ways: vertical, as Talus means it, and as if it were measured normal to the slope.
+Json both_ways(const std::string& name, const Raster& thickness, const ReleaseNumbers& numbers, double limit) {
+  double vertical = 0;
+  for (const double h : thickness.values)
+    if (h > 0) vertical += h * (thickness.grid.cell * thickness.grid.cell);
+  return {{"name", name},
+          {"volume", vertical},
+          {"volume_if_normal", numbers.volume_if_normal},
+          {"area_projected", numbers.area},
+          {"area_true", numbers.true_area},
+          {"thickest", numbers.thickest},
+          {"thickest_normal", numbers.thickest_normal},
+          {"limit", limit}};
+}
+
+Json entry_json(const ScoreEntry& entry) {
+  Json json{{"key", entry.key}, {"label", entry.label}, {"unit", entry.unit}, {"decimals", entry.decimals}};
+  std::visit([&](const auto& value) { json["value"] = value; }, entry.value);
+  return json;
+}
+
+Json building_json(const Building& b) {
+  return {{"name", b.name},
+          {"arrival", finite_or_null(b.arrival)},
+          {"thickness", {b.thickness.largest, b.thickness.p99}},
+          {"speed", {b.speed.largest, b.speed.p99}},
+          {"pressure", {b.pressure.largest, b.pressure.p99}},
+          {"width", b.width},
+          {"force", b.force},
+          {"force_from", source_word(b.source)}};
+}
+
+/// Of every quantity measured at a place its value farthest from zero, and when that was.
+Json extremes_at(const std::string& place, const RunHistory& history) {
+  auto list = Json::array();
+  const HistoryColumn* time = history.find("time_s");
+  for (const HistoryColumn& column : history.columns) {
+    if (column.place != place || time == nullptr) continue;
+    const auto farther = [](double a, double b) { return !std::isfinite(a) || std::abs(a) < std::abs(b); };
+    const auto found = std::max_element(column.values.begin(), column.values.end(), farther);
+    if (found == column.values.end() || !std::isfinite(*found)) continue;
+    list.push_back({{"quantity", column.quantity},
+                    {"unit", column.unit},
+                    {"value", *found},
+                    {"time", time->values[static_cast<std::size_t>(found - column.values.begin())]}});
+  }
+  return list;
+}
 
 Json run_json(const ReportInput& input) {
   const auto& s = input.run.summary;
@@ -54,12 +104,33 @@ Json run_json(const ReportInput& input) {
   return json;
 }
 
+/// What came to each building.
+Json hazard_json(const ReportInput& input) {
+  Json json{{"buildings", Json::array()}};
+  if (input.hazard != nullptr)
+    for (const Building& b : input.hazard->buildings) json["buildings"].push_back(building_json(b));
+  return json;
+}
+
+/// The sections and entries of a score, and what was not scored.
+Json score_json(const Score& score) {
+  Json json{{"sections", Json::array()},
+            {"not_scored", Json::array()},
+            {"notes", score.notes},
+            {"findings", Json::parse(to_json(score.findings))}};
+  for (const auto& section : score.sections) {
+    auto entries = Json::array();
+    for (const auto& entry : section.entries) entries.push_back(entry_json(entry));
+    json["sections"].push_back({{"title", section.title}, {"entries", std::move(entries)}});
+  }
+  for (const auto& [key, why] : score.not_scored) json["not_scored"].push_back({{"key", key}, {"why", why}});
+  return json;
+}
+
 Json map_json(const ReportInput& input) {
   const auto window = shown_window(input);
   int coarsest = 1;
-  Json json{
-      {"window", {{"west", window.west}, {"south", window.south}, {"east", window.east}, {"north", window.north}}}};
-  json["ground"] = ground_json(input, window, coarsest);
+  Json json = ground_json(window, shown_ground(input, window, coarsest));
   json["layers"] = layers_json(input, window, coarsest);
   json["frames"] = frames_json(input, window, coarsest);
   json["lines"] = lines_json(input, window);
@@ -86,32 +157,78 @@ std::vector<StageText> texts_of_stages(const Job& job) {
   return texts;
 }
 
-class ReportWriter : public Writer {
- public:
-  std::string name() const override { return "report"; }
-  std::vector<std::string_view> words() const override { return {"report", "report-3d"}; }
-  bool wanted(const Job& job) const override { return job.options.writes("report"); }
-  std::vector<std::string> names() const override { return {"report.html"}; }
-  Files write(const Job& job) const override {
-    return {write_file(
-        job, "report.html",
-        report_html({job.run, job.options, job.survey, job.score, job.thalweg, texts_of_stages(job),
-                     text_if_there(job.file.parent_path() / "survey" / "survey.json"), job.file, &job.hazard}))};
-  }
-};
-
 }  // namespace
 
-std::shared_ptr<Writer> report_writer() { return std::make_shared<ReportWriter>(); }
-
-Window shown_window(const ReportInput& input) {
-  const auto& grid = input.run.maps.grid;
-  auto window = affected_window(input.run.maps, input.options, input.survey);
-  const double width = std::min(std::max(window.width(), window.height()), grid.east() - grid.west);
-  window.west = std::clamp(0.5 * (window.west + window.east - width), grid.west, grid.east() - width);
-  window.east = window.west + width;
-  return window;
+Json volumes_json(const Run& run, double deposit_threshold) {
+  const auto cosine = slope_cosine({run.maps.grid, run.maps.terrain});
+  const auto& maps = run.maps;
+  auto bodies = Json::array();
+  const double limit = release_limit(maps, deposit_threshold);
+  bodies.push_back(both_ways("Release", {maps.grid, maps.initial_thickness}, release_numbers(run, limit), limit));
+  const auto add = [&](const char* name, const Raster& thickness, double least) {
+    bodies.push_back(both_ways(name, thickness, numbers_of(thickness, cosine, least), least));
+  };
+  add("Deposit", {maps.grid, maps.deposit_thickness}, deposit_threshold);
+  if (!maps.eroded_depth.empty()) add("Eroded ground", {maps.grid, maps.eroded_depth}, 0);
+  return bodies;
 }
+
+Json stages_json(const std::vector<StageText>& stages) {
+  auto list = Json::array();
+  for (const auto& stage : stages) {
+    Json json{{"stage", stage.stage}, {"missing", !stage.text}, {"facts", Json::array()}, {"keys", Json::array()}};
+    if (stage.text) {
+      const auto used = recipe::read_used_recipe(*stage.text, stage.stage + ".used.toml");
+      for (const auto& [name, value] : used.facts)
+        if (name != "table" && name != "result" && name != "resolved") json["facts"].push_back({name, value});
+      for (const auto& key : used.keys)
+        json["keys"].push_back({{"table", key.table},
+                                {"key", key.key},
+                                {"value", key.value},
+                                {"default", key.default_value ? Json(*key.default_value) : Json()}});
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json places_json(const ReportInput& input) {
+  auto list = Json::array();
+  const Window window = shown_window(input);
+  for (const MapPlace& place : input.run.summary.places) {
+    auto rings = Json::array();
+    for (const auto& ring : place.rings) {
+      auto flat = Json::array();
+      for (const auto& [x, y] : ring) {
+        flat.push_back(std::round(100 * (x - window.west)) / 100);
+        flat.push_back(std::round(100 * (y - window.south)) / 100);
+      }
+      rings.push_back(std::move(flat));
+    }
+    list.push_back({{"kind", place.words.substr(0, place.words.find(' '))},
+                    {"name", name_of(place)},
+                    {"rings", std::move(rings)},
+                    {"measured", extremes_at(place.words, input.run.history)}});
+  }
+  return list;
+}
+
+Writer report_writer() {
+  return {.name = "report",
+          .names = {"report.html"},
+          .write =
+              [](const Job& job) {
+                return Files{write_file(
+                    job, "report.html",
+                    report_html({job.run, job.options, job.survey, job.score, job.thalweg, texts_of_stages(job),
+                                 text_if_there(job.file.parent_path() / "survey" / "survey.json"), job.file,
+                                 &job.hazard}))};
+              },
+          .words = {"report", "report-3d"},
+          .asked_for = [](const Job& job) { return job.options.writes("report"); }};
+}
+
+Window shown_window(const ReportInput& input) { return page_window(input.run.maps, input.options, input.survey); }
 
 std::string report_html(const ReportInput& input) {
   Json data;

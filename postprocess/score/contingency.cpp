@@ -4,22 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
-#include "common/map/raster.hpp"
+#include "common/gis/resampling.hpp"
 #include "common/map/statistics.hpp"
 
 namespace talus::postprocess {
 namespace {
 
-double ratio(double part, double whole) { return whole > 0 ? part / whole : std::numeric_limits<double>::quiet_NaN(); }
+double ratio(double part, double whole) { return whole > 0 ? part / whole : nan; }
 
 /// 1 where two sizes agree, falling steeply as their ratio leaves 1.
 double likeness(double ratio) {
   return ratio > 0 ? std::pow(std::sin(std::numbers::pi / 2 * std::min(ratio, 1 / ratio)), 5) : 0;
 }
+
+double thickness_or_none(double value) { return std::isfinite(value) ? value : 0; }
 
 }  // namespace
 
@@ -38,12 +39,12 @@ double Contingency::d2pc() const {
 }
 
 double Contingency::spi(double runout_ratio) const {
-  if (!(runout_ratio > 0)) return std::numeric_limits<double>::quiet_NaN();
+  if (!(runout_ratio > 0)) return nan;
   Contingency even = *this;
   even.true_negative = std::max(0.0, 5 * (true_positive + false_negative) - false_positive);
   const double sum = std::max(0.0, csi()) + std::max(0.0, even.hss()) + std::max(0.0, 1 - even.d2pc()) +
                      likeness(foc()) + likeness(runout_ratio);
-  return true_positive + false_negative > 0 ? sum / 5 : std::numeric_limits<double>::quiet_NaN();
+  return true_positive + false_negative > 0 ? sum / 5 : nan;
 }
 
 Contingency compare(const std::vector<double>& simulated, double simulated_threshold,
@@ -79,10 +80,9 @@ ThicknessError thickness_error(const std::vector<double>& simulated, const std::
 
 double auroc(const std::vector<double>& simulated, const std::vector<double>& surveyed, double threshold) {
   std::vector<std::pair<double, bool>> cells;
-  for (std::size_t i = 0; i < simulated.size(); ++i) {
+  for (std::size_t i = 0; i < simulated.size(); ++i)
     if (!std::isnan(simulated[i]) && !std::isnan(surveyed[i]))
       cells.emplace_back(simulated[i], surveyed[i] > threshold);
-  }
   std::sort(cells.begin(), cells.end());
   double wins = 0, yes = 0, no = 0;
   for (std::size_t start = 0; start < cells.size();) {
@@ -95,7 +95,7 @@ double auroc(const std::vector<double>& simulated, const std::vector<double>& su
     no += no_here;
     start = end;
   }
-  return yes > 0 && no > 0 ? wins / (yes * no) : std::numeric_limits<double>::quiet_NaN();
+  return yes > 0 && no > 0 ? wins / (yes * no) : nan;
 }
 
 Residual residual_of(const std::vector<double>& simulated, const std::vector<double>& surveyed,
@@ -110,11 +110,43 @@ Residual residual_of(const std::vector<double>& simulated, const std::vector<dou
     within += std::abs(r) <= normal_95 ? 1 : 0;
     square += r * r;
   }
-  if (residuals.empty()) {
-    return {0, nan, nan, nan};
-  }
+  if (residuals.empty()) return {0, nan, nan, nan};
   const auto count = static_cast<double>(residuals.size());
   return {residuals.size(), median(residuals), within / count, square / count};
+}
+
+DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second, double threshold) {
+  const Raster theirs_as_is{second.grid, second.deposit_thickness};
+  const bool same = first.grid.has_cells_of(second.grid) && first.grid.crs_wkt == second.grid.crs_wkt;
+  const Raster other = same ? theirs_as_is : resample_thickness(theirs_as_is, first.grid);
+  DepositDifference found{.difference = {first.grid, std::vector<double>(first.grid.count(), nan)}};
+  Sum ours, theirs, squares;
+  std::vector<double> changes;
+  std::size_t both = 0, either = 0;
+  for (std::size_t i = 0; i < first.grid.count(); ++i) {
+    const double a = thickness_or_none(first.deposit_thickness[i]), b = thickness_or_none(other.values[i]);
+    ours.add(a);
+    theirs.add(b);
+    if (a > 0 || b > 0) found.difference.values[i] = b - a;
+    found.larger = std::max(found.larger, b - a);
+    found.smaller = std::max(found.smaller, a - b);
+    both += a > threshold && b > threshold;
+    if (!(a > threshold) && !(b > threshold)) continue;
+    ++either;
+    squares.add((b - a) * (b - a));
+    changes.push_back(std::abs(b - a));
+  }
+  const double area = first.grid.cell * first.grid.cell, scale = theirs.value() > 0 ? ours.value() / theirs.value() : 0;
+  Sum moved;
+  for (std::size_t i = 0; i < first.grid.count(); ++i)
+    moved.add(0.5 *
+              std::abs(thickness_or_none(first.deposit_thickness[i]) - scale * thickness_or_none(other.values[i])));
+  found.volume = (theirs.value() - ours.value()) * area;
+  found.moved = ours.value() > 0 ? moved.value() / ours.value() : 0;
+  found.overlap = either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 1;
+  found.p99 = either > 0 ? quantile(std::move(changes), 0.99) : 0;
+  found.rms = either > 0 ? std::sqrt(squares.value() / static_cast<double>(either)) : 0;
+  return found;
 }
 
 }  // namespace talus::postprocess

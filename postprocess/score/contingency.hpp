@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Agreement of two maps of yes and no.
+// How far two maps agree: areas of yes and no, errors of thickness.
 #pragma once
 
 #include <cstddef>
 #include <vector>
+
+#include "common/map/raster.hpp"
+#include "common/run/run_file.hpp"
 
 namespace talus::postprocess {
 
@@ -23,8 +26,7 @@ struct Contingency {
   double false_alarm_ratio() const;
   /// Heidke skill score: agreement beyond chance, 1 = perfect, 0 = chance (Heidke 1926).
   double hss() const;
-  /// Distance to perfect classification: sqrt((1 - TPR)^2 + FPR^2), 0 = perfect (Formetta et al. 2016; r.avaflow's
-  /// D2PC).
+  /// Distance to perfect classification, sqrt((1 - TPR)^2 + FPR^2) (Formetta et al. 2016; r.avaflow's D2PC).
   double d2pc() const;
   /// Factor of conservativeness: simulated over surveyed area, (TP + FP) / (TP + FN) (r.avaflow's FoC).
   double foc() const;
@@ -39,8 +41,7 @@ struct Contingency {
 Contingency compare(const std::vector<double>& simulated, double simulated_threshold,
                     const std::vector<double>& surveyed, double surveyed_threshold, double cell_area);
 
-/// Difference simulated - surveyed over the union of both above the threshold (cells where either exceeds it) [m]; NaN
-/// where no cell exceeds it.
+/// Difference simulated - surveyed over the cells where either exceeds the threshold [m]; NaN where none does.
 struct ThicknessError {
   double rmse = 0, bias = 0, mean_absolute = 0;
   double median = 0;
@@ -67,5 +68,20 @@ struct Residual {
 /// Over the cells where `counts` holds and sigma is positive; a NaN in any of the three leaves a cell out.
 Residual residual_of(const std::vector<double>& simulated, const std::vector<double>& surveyed,
                      const std::vector<double>& sigma, const std::vector<char>& counts);
+
+/// How far two deposits differ, on the first one's grid.
+struct DepositDifference {
+  Raster difference;   ///< second less first, vertical [m]; NaN where both are outside
+  double larger = 0;   ///< largest gain [m]
+  double smaller = 0;  ///< largest loss, as a positive number [m]
+  double p99 = 0;      ///< 99 % of the cells where either is thicker than the threshold differ by less [m]
+  double volume = 0;   ///< of the second less that of the first [m3]
+  double moved = 0;    ///< share of the first deposit that lies elsewhere in the second, volumes set equal [-]
+  double overlap = 0;  ///< area of both over area of either, where thicker than the threshold [-]
+  double rms = 0;      ///< over the area of either [m]
+};
+
+/// Compares the deposits, the second brought to the first one's grid by area weights. Throws DataError: other CRS.
+DepositDifference deposit_difference(const RunMaps& first, const RunMaps& second, double threshold);
 
 }  // namespace talus::postprocess

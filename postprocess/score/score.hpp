@@ -1,28 +1,21 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbers of a run, and how well it agrees with a survey.
-//
-// Definitions (the same words stand under score.txt; those of single scores with the functions that compute them):
-// - footprint: peak thickness above footprint_threshold_m; the survey's is its peak thickness above the same threshold,
-// or
-//   the inside of its polygon, or |after - before| above the threshold.
-// - deposit: final thickness above deposit_threshold_m. Against a surveyed change (after - before), both sides are the
-// rise
-//   of the surface: max(0, after - before) and max(0, final - initial thickness), because in the source area the
-//   slide's own scar is not deposit.
-// - run-out L: distance in plan from the crown (highest cell of the release), straight to the farthest deposit cell, or
-// along
-//   the thalweg to the deposit cell farthest along it; H: drop of the surface before the failure between the two; H/L
-//   is the tangent of the Fahrboeschung (Heim 1932).
+// What footprint, deposit and run-out are, add_definitions() says (agreement_section.cpp), which puts it under
+// score.txt; single scores are defined with the functions that compute them.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "common/map/raster.hpp"
+#include "common/run/mobility.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/options/options.hpp"
 #include "postprocess/score/thalweg.hpp"
@@ -32,7 +25,6 @@ namespace talus::postprocess {
 
 struct Hazard;
 
-/// One number or word of a score.
 struct ScoreEntry {
   std::string key;    ///< as in score.json, with unit
   std::string label;  ///< as in score.txt
@@ -66,14 +58,84 @@ Score make_score(const Run& run, const Options& options, const std::optional<Sur
 /// Warns of a run that ended with its simulated time, and not at rest.
 void warn_of_end(const Run& run);
 
-/// Scores a run along thalweg_of(run, options).
-Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey);
-
-/// One flat object: key -> value; a value that does not exist is absent, and `not_scored` says why. `findings` is an
-/// array of objects.
+/// One flat object: key -> value; `not_scored` says why a value is absent; `findings` is an array of objects.
 std::string to_json(const Score& score);
 
 /// A score as an aligned table with the findings and the definitions below it.
 std::string to_table(const Score& score);
+
+/// Collects entries in sections; a number that is not finite goes to not_scored with the reason given.
+class Sheet {
+ public:
+  explicit Sheet(std::string title) { score_.title = std::move(title); }
+
+  void section(std::string title) { score_.sections.push_back({std::move(title), {}}); }  ///< begins a section
+  /// Adds a word to the last section.
+  void text(std::string key, std::string label, std::string value) {
+    score_.sections.back().entries.push_back({std::move(key), std::move(label), "", std::move(value), 0});
+  }
+  /// Adds a whole number to the last section.
+  void count(std::string key, std::string label, std::int64_t value) {
+    score_.sections.back().entries.push_back({std::move(key), std::move(label), "", value, 0});
+  }
+  /// Adds a number with its unit and decimals; one that is not finite is not scored, for the reason `missing`.
+  void number(std::string key, std::string label, std::string unit, double value, int decimals,
+              const std::string& missing = "not a number") {
+    if (std::isfinite(value))
+      score_.sections.back().entries.push_back({std::move(key), std::move(label), std::move(unit), value, decimals});
+    else
+      score_.not_scored.emplace_back(std::move(key), missing);
+  }
+  void skip(std::initializer_list<const char*> keys, const std::string& why) {
+    for (const auto* key : keys) score_.not_scored.emplace_back(key, why);
+  }
+  void note(std::string text) { score_.notes.push_back(std::move(text)); }  ///< a remark below the score
+  Score take() { return std::move(score_); }                                ///< as filled in so far
+
+ private:
+  Score score_;
+};
+
+struct Scored {
+  const Run& run;
+  const Options& options;
+  const Survey* survey;  ///< null: none
+  const Thalweg& thalweg;
+  std::optional<Place> crown;
+  double crown_along = 0;  ///< where the crown lies along the thalweg [m]; NaN without one
+};
+
+/// Run-outs from the crown [m]; NaN where there is none.
+struct Reach {
+  double straight = 0;  ///< to the cell above the threshold that is farthest as the crow flies
+  double along = 0;     ///< along the thalweg, to the cell that is farthest along it
+};
+/// Run-outs from the crown to cells of `values` above `threshold`.
+Reach reach_of(const Scored& scored, const MapGrid& grid, const std::vector<double>& values, double threshold);
+
+void add_run(const Scored& scored, Sheet& sheet);       ///< volumes, computation, extent
+void add_mobility(const Scored& scored, Sheet& sheet);  ///< run-out, drop, angles, travel
+void add_hazard(const Hazard& hazard, Sheet& sheet);    ///< intensity, angle of reach, buildings
+/// Overlap, thickness and run-out against the survey, and what that means in units of the survey's error.
+void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet);
+/// Adds how far the scores vary within the error of the survey.
+void add_spread(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet);
+/// Adds what the words of a score mean.
+void add_definitions(const Scored& scored, Sheet& sheet);
+
+/// Scores of surveys drawn within their error, a value each draw. Empty vectors: not asked for, or no error is known.
+struct Resampled {
+  std::vector<double> footprint_csi;  ///< empty unless the footprint is a surveyed change
+  std::vector<double> deposit_csi, rmse, bias, volume, volume_ratio, runout_difference, thalweg_runout_difference;
+};
+
+/// Each draw is measured + sigma g with g from RandomField, brought under the level of detection again, and scored as
+/// the survey is. Cells measured as exactly 0 stay so. For the run-out only patches of deposit count that touch a
+/// deposit of the survey. The survey holds one such error already: the mean lies below a score that errors lower.
+Resampled resample(const Scored& scored, const OnSurveyGrid& simulated);
+
+/// `values` with 0 in patches (cells above `threshold`, joined by eight neighbours) that hold no cell of `seeds`.
+std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,
+                                 const std::vector<char>& seeds);
 
 }  // namespace talus::postprocess

@@ -8,11 +8,33 @@
 #include <string>
 #include <vector>
 
+#include "common/map/raster.hpp"
 #include "common/run/mobility.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/options/options.hpp"
 
 namespace talus::postprocess {
+
+using Polyline = std::vector<std::array<double, 2>>;  // [m]
+
+/// Length along the line up to each vertex [m]. [line.size()]
+std::vector<double> lengths_along(const Polyline& line);
+
+/// A line with vertices at even distances, as near to `step` [m] as its length allows; ends stay.
+Polyline resampled(const Polyline& line, double step);
+
+/// Vertices averaged with their neighbours (1/4, 1/2, 1/4) so many times; ends stay. On vertices a step apart this is a
+/// Gaussian of standard deviation step * sqrt(times / 2).
+Polyline smoothed(Polyline line, int times);
+
+/// Without the vertices nearer than `step` [m] to the one kept before, and without those that would turn the line by
+/// more than a right angle. The first and the last stay.
+Polyline without_returns(const Polyline& line, double step);
+
+/// The cheapest way from cell to cell (eight neighbours; Dijkstra 1959) from one place to another, where a metre costs
+/// the thickest value of the map over that of the cell: it keeps to the middle of the flow. Begins and ends at the
+/// places themselves; one outside the grid is joined by a straight line.
+Polyline flow_path(const MapGrid& grid, const std::vector<double>& thickness, const Place& from, const Place& to);
 
 /// A line in map coordinates [m] from the crown downwards, vertices about one cell apart. Empty (no vertex) where a run
 /// has neither release nor deposit and no line is given.
@@ -35,7 +57,6 @@ Thalweg thalweg_of(const Run& run, const Options& options);
 /// `values` of `grid` at the line's vertices, bilinear; NaN outside the grid and where a cell has no value.
 std::vector<double> sample_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values);
 
-/// Where a point lies beside a line.
 struct AlongLine {
   double distance = 0;  ///< along the line, of the nearest point of it [m]; beyond its ends the end segments go on
   double offset = 0;    ///< from the line, positive to the left looking downwards [m]
@@ -47,7 +68,7 @@ AlongLine project(const Thalweg& thalweg, double x, double y);
 class DistancesAlong {
  public:
   DistancesAlong(const Thalweg& thalweg, const MapGrid& grid);
-  double at(int column, int row);  ///< of the cell's centre [m]
+  double at(std::size_t cell);  ///< of the cell's centre [m]
 
  private:
   const Thalweg& thalweg_;
@@ -69,7 +90,6 @@ std::optional<PlaceAlong> farthest_along(const Thalweg& thalweg, const MapGrid& 
 /// What moves or has come to rest at a frame: its thickness without erodible ground that still lies in place [m].
 std::vector<double> flow_thickness(const Run& run, std::size_t frame);
 
-/// A number over time.
 struct Series {
   std::vector<double> time;   ///< [s]
   std::vector<double> value;  ///< NaN where there is none

@@ -3,24 +3,68 @@
 #include "postprocess/survey/survey.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
 #include "common/gis/crs.hpp"
-#include "common/gis/polygons.hpp"
+#include "common/gis/features.hpp"
 #include "common/gis/raster_file.hpp"
-#include "common/gis/read_raster.hpp"
 #include "common/gis/resampling.hpp"
-#include "common/map/cells_inside.hpp"
-#include "postprocess/survey/survey_grid.hpp"
+#include "common/map/raster.hpp"
+#include "common/map/statistics.hpp"
+#include "common/stage/files.hpp"
+#include "common/stage/findings.hpp"
 
 namespace talus::postprocess {
+namespace fs = std::filesystem;
 namespace {
 
-namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::filesystem::path file_in(const std::filesystem::path& out) { return out / "survey" / "survey.json"; }
+
+/// The file, null where there is none, discarded where it is no JSON.
+Json read_json(const std::filesystem::path& out) {
+  const std::optional<std::string> text = text_if_there(file_in(out));
+  return text ? Json::parse(*text, nullptr, false) : Json(nullptr);
+}
+
+Json table(const Json& in, const char* key) {
+  return in.is_object() && in.contains(key) && in.at(key).is_object() ? in.at(key) : Json::object();
+}
+
+bool flag(const Json& in, const char* key, bool otherwise) {
+  return in.contains(key) && in.at(key).is_boolean() ? in.at(key).get<bool>() : otherwise;
+}
+
+std::string word_in(const Json& in, const char* key) {
+  return in.contains(key) && in.at(key).is_string() ? in.at(key).get<std::string>() : "";
+}
+
+bool error_known(const Json& json) { return flag(table(json, "error"), "known", true); }
+
+/// Throws DataError, with the command that mends it, unless the file's CRS is the run's.
+void check_crs(const std::filesystem::path& file, const MapGrid& grid, const MapGrid& run) {
+  if (same_crs(grid.crs_wkt, run.crs_wkt)) return;
+  const auto mend = run.crs_wkt.empty() || grid.crs_wkt.empty()
+                        ? fmt::format("If the coordinates fit, name the CRS: gdal_edit.py -a_srs {} {}",
+                                      run.crs_wkt.empty() ? "None" : crs_name(run.crs_wkt), file.string())
+                        : fmt::format("Reproject: gdalwarp -t_srs {} {} out.tif", crs_name(run.crs_wkt), file.string());
+  throw DataError({fmt::format("{}: CRS is {}", file.string(), crs_name(grid.crs_wkt)),
+                   fmt::format("the run is in {}", crs_name(run.crs_wkt)), mend});
+}
+
+/// Values that the options call normal to the slope become vertical ones, by the slope of the run's ground.
+void to_vertical(Raster& raster, const SurveyOptions& options, const RunMaps& maps) {
+  if (options.direction != Direction::slope_normal) return;
+  const auto cosine = on_grid({maps.grid, slope_cosine({maps.grid, maps.terrain})}, raster.grid);
+  for (std::size_t i = 0; i < cosine.size(); ++i)
+    if (cosine[i] > 0) raster.values[i] /= cosine[i];  // beyond the run's ground: as it is
+}
 
 std::string box(const MapGrid& grid) {
   return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", grid.west, grid.east(), grid.south, grid.north());
@@ -28,13 +72,12 @@ std::string box(const MapGrid& grid) {
 
 void check_overlap(const fs::path& file, const Survey& survey, const RunMaps& maps) {
   const auto& values = survey.deposit.empty() ? survey.footprint : survey.deposit;
-  for (int row = 0; row < survey.grid.rows; ++row) {
-    const double y = survey.grid.y(row);
-    if (y < maps.grid.south || y > maps.grid.north()) continue;
-    for (int column = 0; column < survey.grid.columns; ++column) {
-      const double x = survey.grid.x(column);
-      if (x > maps.grid.west && x < maps.grid.east() && std::isfinite(values[survey.grid.index(column, row)])) return;
-    }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto [column, row] = survey.grid.cell_of(i);
+    const double x = survey.grid.x(column), y = survey.grid.y(row);
+    if (x > maps.grid.west && x < maps.grid.east() && y >= maps.grid.south && y <= maps.grid.north() &&
+        std::isfinite(values[i]))
+      return;
   }
   throw DataError({fmt::format("{}: no surveyed cell lies in the run's area", file.string()),
                    fmt::format("survey {}; run {}", box(survey.grid), box(maps.grid)),
@@ -64,9 +107,8 @@ void read_surfaces(const SurveyOptions& options, const RunMaps& maps, Survey& su
     before = read_raster_in_metres(options.before_dem, maps.grid.crs_wkt);
     survey.inputs.push_back(options.before_dem);
   }
-  if (!same_grid(before.grid, after.grid) || !same_crs(before.grid.crs_wkt, after.grid.crs_wkt)) {
+  if (!same_grid(before.grid, after.grid) || !same_crs(before.grid.crs_wkt, after.grid.crs_wkt))
     before = resample_elevation(before, after.grid);
-  }
   survey.grid = after.grid;
   for (std::size_t i = 0; i < after.values.size(); ++i) survey.measured.push_back(after.values[i] - before.values[i]);
 }
@@ -95,7 +137,118 @@ void read_footprint(const SurveyOptions& options, const RunMaps& maps, double th
   }
 }
 
+/// No survey is free of error: 0 is what comes out where one model was made from the other.
+void refuse_zeros(const std::filesystem::path& file, const Raster& sigma) {
+  if (std::any_of(sigma.values.begin(), sigma.values.end(), [](double s) { return s > 0; })) return;
+  throw DataError({file.string() + ": a standard error of 0 m everywhere", "no survey is free of error",
+                   "Give its true error (sigma_m), or leave sigma out: no score carries an error then"});
+}
+
+/// The raster of sigma on the survey's grid. A measured value without a sigma, or with one of 0, is not known well
+/// enough to be compared; a measured 0 stands for ground that was mapped as untouched, and needs none.
+std::vector<double> read_sigma(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
+  if (options.sigma.empty()) return std::vector<double>(survey.grid.count(), options.sigma_m);
+  auto raster = read_raster(options.sigma);
+  check_crs(options.sigma, raster.grid, maps.grid);
+  survey.inputs.push_back(options.sigma);
+  if (!options.thickness.empty()) to_vertical(raster, options, maps);
+  if (!same_grid(raster.grid, survey.grid)) raster = resample_elevation(raster, survey.grid);
+  refuse_zeros(options.sigma, raster);
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < raster.values.size(); ++i) {
+    double& sigma = raster.values[i];
+    if (sigma < 0)
+      throw DataError({fmt::format("{}: a standard error of {:g} m", options.sigma.string(), sigma),
+                       "it cannot be negative", "Give the raster of 1 sigma, in metres"});
+    if (sigma > 0 || std::isnan(survey.measured[i])) continue;
+    if (survey.measured[i] == 0) {
+      sigma = 0;
+      continue;
+    }
+    survey.measured[i] = nan;
+    ++without;
+  }
+  if (without > 0) survey.notes.push_back(fmt::format("{} surveyed cells without a sigma are left out.", without));
+  return raster.values;
+}
+
+/// Fills survey.error as the options say; measured values without a sigma become NaN, and a note says how many. Warns
+/// where the range of the errors is not known. Throws DataError: unreadable file, other CRS, negative sigma.
+void read_error(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
+  if (options.sigma.empty() && options.sigma_m == 0) return;
+  auto& error = survey.error;
+  error.sigma = read_sigma(options, maps, survey);
+  error.detection = 1.96;  // 95 %
+  error.correlation_length = options.correlation_length;
+  if (options.correlation_length == 0 && !options.sigma.empty())
+    error.correlation_length = std::max(0.0, raster_item(options.sigma, "CORRELATION_LENGTH_M").value_or(0));
+  if (error.correlation_length > 0) return;
+  warn("unknown-correlation-length",
+       "[postprocess.survey] The range of the survey's errors is not known: they are drawn for every cell for itself, "
+       "which makes the spread of scores too small. Give correlation_length_m.");
+}
+
 }  // namespace
+
+FoundSurvey read_found_survey(const std::filesystem::path& out) {
+  if (fs::exists(out / "survey" / "slide_difference.tif") && !fs::exists(file_in(out)))
+    throw DataError({file_in(out).string() + ": no such file",
+                     "talus-preprocess writes it last; without it what lies beside it may be of two preparations",
+                     "Run talus-preprocess again"});
+  const Json json = read_json(out);
+  if (json.is_null()) return {};
+  if (!json.is_object())
+    throw DataError(
+        {file_in(out).string() + ": it is no JSON", "it was cut short or edited", "Run talus-preprocess again"});
+  const Json outside = table(json, "outside_slide");
+  return {error_known(json),         flag(outside, "large", false), flag(outside, "doubtful", false),
+          word_in(outside, "words"), word_in(json, "id"),           word_in(json, "recipe")};
+}
+
+bool lacks_error(const std::filesystem::path& out) { return !error_known(read_json(out)); }
+
+void judge_outside(const FoundSurvey& found, const std::filesystem::path& out) {
+  if (!found.outside_is_large) return;
+  refuse_unless_accepted("change-outside-slide",
+                         {file_in(out).string() + ": " + found.outside_words,
+                          "the surveyed deposit, and every score against it, would lack what belongs to the slide",
+                          "Look at survey/survey.qgs, set these keys, and run talus-preprocess again"});
+}
+
+bool same_grid(const MapGrid& a, const MapGrid& b) {
+  const double slack = 1e-6 * a.cell;
+  return a.columns == b.columns && a.rows == b.rows && std::abs(a.west - b.west) < slack &&
+         std::abs(a.south - b.south) < slack && std::abs(a.cell - b.cell) * std::max(a.columns, a.rows) < slack;
+}
+
+std::vector<double> on_grid(const Raster& raster, const MapGrid& grid) {
+  return same_grid(raster.grid, grid) ? raster.values : resample_thickness(raster, grid).values;
+}
+
+void judge_order(const Survey& survey, const RunMaps& maps) {
+  if (!survey.deposit_is_change) return;
+  constexpr double tells = 0.1;  // of what fell: less that rose has no say in where mass went
+  const Raster run_ground{maps.grid, maps.before};
+  const Raster ground = same_grid(maps.grid, survey.grid) ? run_ground : resample_elevation(run_ground, survey.grid);
+  std::array<Sum, 2> volume, moment;
+  for (std::size_t i = 0; i < survey.measured.size(); ++i) {
+    const double change = survey.measured[i], height = ground.values[i];
+    if (!(std::abs(change) > survey.footprint_threshold) || std::isnan(height)) continue;
+    const std::size_t side = change > 0;
+    volume.at(side).add(std::abs(change));
+    moment.at(side).add(std::abs(change) * height);
+  }
+  const double fall = volume[0].value(), rise = volume[1].value(), area = survey.grid.cell * survey.grid.cell;
+  if (!(fall > 0) || !(rise > tells * fall)) return;
+  const double higher = moment[1].value() / rise - moment[0].value() / fall;
+  if (!(higher > 0)) return;
+  refuse_unless_accepted(
+      "swapped-surveys",
+      {fmt::format("[postprocess.survey]: {} m3 rose and {} m3 fell", grouped(rise * area), grouped(fall * area)),
+       fmt::format("what rose lies {:.1f} m higher than what fell, and mass goes down", higher),
+       "Are before_dem and after_dem swapped, or is the difference before less after? Then turn them round"},
+      {{"rise", rise * area, "m3"}, {"fall", fall * area, "m3"}, {"higher", higher, "m"}});
+}
 
 std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold) {
   if (!options.given()) return std::nullopt;
@@ -131,9 +284,8 @@ OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
       survey.deposit_is_change ? bring(maps.initial_thickness) : std::vector<double>(survey.grid.count(), 0.0);
   if (survey.deposit_is_change && !maps.eroded_depth.empty()) {
     const auto eroded = bring(maps.eroded_depth);
-    for (std::size_t i = 0; i < eroded.size(); ++i) {
+    for (std::size_t i = 0; i < eroded.size(); ++i)
       if (std::isfinite(eroded[i])) initial[i] = (std::isnan(initial[i]) ? 0 : initial[i]) + eroded[i];
-    }
   }
   const auto& surveyed = survey.deposit.empty() ? survey.footprint : survey.deposit;
   const double area = survey.grid.cell * survey.grid.cell;
@@ -147,9 +299,21 @@ OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
     simulated.change.push_back(survey.deposit_is_change ? change : h);
     if (std::isfinite(surveyed[i])) continue;
     simulated.deposit_left_out += h * area;
-    h = simulated.change.back() = std::numeric_limits<double>::quiet_NaN();
+    h = simulated.change.back() = nan;
   }
   return simulated;
+}
+
+DetectedChange detected(const Survey& survey, const std::vector<double>& value) {
+  DetectedChange seen{value, value};
+  const auto& error = survey.error;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const bool detected = error.sigma.empty() || !(std::abs(value[i]) < error.detection * error.sigma[i]);
+    if (std::isnan(value[i])) continue;
+    seen.deposit[i] = detected ? std::max(0.0, value[i]) : 0;
+    seen.footprint[i] = detected ? std::abs(value[i]) : 0;
+  }
+  return seen;
 }
 
 }  // namespace talus::postprocess

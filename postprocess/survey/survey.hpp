@@ -14,6 +14,25 @@
 
 namespace talus::postprocess {
 
+/// What OUT/survey/survey.json says.
+struct FoundSurvey {
+  bool error_known = true;
+  bool outside_is_large = false;     ///< much changed outside the slide, and nothing explains it
+  bool outside_is_doubtful = false;  ///< much of what counts as noise lies within reach of the slide
+  std::string outside_words = {};
+  std::string id = {};           ///< of the domain that was prepared with it
+  std::string recipe_mark = {};  ///< of the [preprocess] that made it
+};
+
+/// Reads it; what it does not say is as above. Throws DataError: no JSON, or alone missing.
+FoundSurvey read_found_survey(const std::filesystem::path& out);
+
+/// True where it says that the error is not known, so that there is no raster of it. Never throws.
+bool lacks_error(const std::filesystem::path& out);
+
+/// Refuses, unless accepted ("change-outside-slide"), a survey in which much changed outside the slide.
+void judge_outside(const FoundSurvey& found, const std::filesystem::path& out);
+
 /// How far a survey may be off.
 struct SurveyError {
   std::vector<double> sigma;      ///< standard error of the measured value at each cell [m]; empty: not known
@@ -21,8 +40,7 @@ struct SurveyError {
   double detection = 0;           ///< level of detection over sigma; 0: off
 };
 
-/// What texts call a reference: "the survey", "surveyed thickness"; of another model "the reference" and "reference
-/// thickness".
+/// What texts call a reference: "the survey", "surveyed thickness"; of another model "the reference".
 struct ReferenceWords {
   const char* noun;
   const char* adjective;
@@ -43,7 +61,6 @@ struct Survey {
   std::vector<MapPolygon> polygons;
   std::vector<std::filesystem::path> inputs;
   std::vector<std::string> notes;  ///< what a reader of the scores should know of it
-  /// What texts call it.
   ReferenceWords words() const {
     return kind == ReferenceKind::model ? ReferenceWords{"reference", "reference"}
                                         : ReferenceWords{"survey", "surveyed"};
@@ -66,8 +83,7 @@ struct OnSurveyGrid {
   double deposit_left_out = 0;  ///< volume of simulated deposit on cells that were not surveyed [m3]
 };
 
-/// Read what the options name. Throws DataError: unreadable, other CRS, no overlap with the run. Empty if nothing is
-/// given.
+/// What the options name; empty if that is nothing. Throws DataError: unreadable, other CRS, no overlap with the run.
 std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold);
 
 /// Area-weighted, so that volume is kept; where the run's map ends but the survey goes on, nothing arrived: 0.
@@ -77,5 +93,11 @@ OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey);
 /// rose by more than the footprint's threshold lies higher, on average by volume, than what fell by as much, and is
 /// more than a tenth of it. A survey that is no change of the surface says nothing of this.
 void judge_order(const Survey& survey, const RunMaps& maps);
+
+/// True where cells coincide to a millionth of a cell.
+bool same_grid(const MapGrid& a, const MapGrid& b);
+
+/// A thickness on `grid`, by area weights where the grids differ.
+std::vector<double> on_grid(const Raster& raster, const MapGrid& grid);
 
 }  // namespace talus::postprocess

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "postprocess/three_d/vtk_file.hpp"
+#include "postprocess/three_d/three_d.hpp"
 
 #include <zlib.h>
 
@@ -13,12 +13,13 @@
 #include <span>
 #include <stdexcept>
 #include <system_error>
+#include <type_traits>
 
 #include <fmt/format.h>
 
 #include "common/gis/escaped_xml.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
-#include "common/stage/write_fault.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -27,22 +28,10 @@ constexpr std::size_t block_bytes = 1 << 18;  // uncompressed; VTK takes any siz
 constexpr int effort = 4;                     // of zlib: 9 takes four times as long for 2 % less
 
 template <class T>
-constexpr const char* vtk_type();
-template <>
-constexpr const char* vtk_type<float>() {
-  return "Float32";
-}
-template <>
-constexpr const char* vtk_type<double>() {
-  return "Float64";
-}
-template <>
-constexpr const char* vtk_type<std::int32_t>() {
-  return "Int32";
-}
-template <>
-constexpr const char* vtk_type<std::int64_t>() {
-  return "Int64";
+constexpr const char* vtk_type() {
+  if (std::is_same_v<T, float>) return "Float32";
+  if (std::is_same_v<T, double>) return "Float64";
+  return sizeof(T) == 4 ? "Int32" : "Int64";
 }
 
 /// The file's two halves as they grow: the XML that names arrays by their place, and the packed bytes.
@@ -113,6 +102,9 @@ void put_array(VtkText& text, const VtkArray& array, std::size_t tuples) {
       array.values);
 }
 
+/// Lengths to 1/1024 m: the low bits of coordinates are zero, and zlib has less to pack.
+double to_a_millimetre(double metres) { return std::round(metres * 1024) / 1024; }
+
 void put_points(VtkText& text, const VtkMesh& mesh) {
   std::vector<double> flat;
   flat.reserve(3 * mesh.points.size());
@@ -145,8 +137,6 @@ std::vector<std::int64_t> ids_of(const VtkMesh& mesh) {
 
 }  // namespace
 
-double to_a_millimetre(double metres) { return std::round(metres * 1024) / 1024; }
-
 void write_vtp(const std::filesystem::path& file, const VtkMesh& mesh) {
   const bool points = mesh.quads.empty();
   VtkText text;
@@ -155,8 +145,7 @@ void write_vtp(const std::filesystem::path& file, const VtkMesh& mesh) {
       fmt::format("<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\" "
                   "compressor=\"vtkZLibDataCompressor\">",
                   std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian"));
-  text.line("<PolyData>");
-  text.line("<FieldData>");
+  text.line("<PolyData>\n<FieldData>");
   for (const auto& [name, words] : mesh.facts) text.words(name, words);
   text.line("</FieldData>");
   text.line(
@@ -168,8 +157,7 @@ void write_vtp(const std::filesystem::path& file, const VtkMesh& mesh) {
   text.line("</PointData>");
   put_points(text, mesh);
   put_cells(text, points ? "Verts" : "Polys", ids_of(mesh), points ? 1 : 4);
-  text.line("</Piece>");
-  text.line("</PolyData>");
+  text.line("</Piece>\n</PolyData>");
   text.write(file);
 }
 

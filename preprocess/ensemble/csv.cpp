@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/ensemble/csv.hpp"
 
+#include <algorithm>
+#include <set>
+#include <utility>
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <optional>
-#include <system_error>
-
+#include "common/ensemble/options.hpp"
 #include "common/error.hpp"
+#include "common/table_words.hpp"
 #include "common/whole_text.hpp"
 
 namespace talus::preprocess {
@@ -18,19 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A field and where it begins, both counted from 1.
+struct CsvField {
+  std::string text;
+  int line = 0, column = 0;
+};
 using Row = std::vector<CsvField>;
 
 [[noreturn]] void refuse_place(const fs::path& file, const CsvField& at, const std::string& what,
                                const std::string& why, const std::string& mend) {
-  throw DataError(Fault{fmt::format("{}:{}:{}: {}", file.string(), at.line, at.column, what), why, mend});
-}
-
-/// The table without the mark of its byte order.
-std::string text_of(const fs::path& file) {
-  std::string text = whole_text(file, std::uintmax_t{64} << 20, [&](const std::string& reason) {
-    throw DataError(Fault{file.string() + ": the table cannot be read", reason, "Check the path"});
-  });
-  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+  throw DataError({fmt::format("{}:{}:{}: {}", file.string(), at.line, at.column, what), why, mend});
 }
 
 /// Walks over the text of a file, field by field.
@@ -42,7 +39,8 @@ class CsvWalk {
   std::optional<Row> next() {
     while (at_ < text_.size()) {
       if (text_[at_] == '#') {
-        skip_line();
+        while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+        if (at_ < text_.size()) step();
         continue;
       }
       Row row = read_row();
@@ -58,10 +56,6 @@ class CsvWalk {
       begin_ = at_ + 1;
     }
     ++at_;
-  }
-  void skip_line() {
-    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-    if (at_ < text_.size()) step();
   }
   bool blank() const { return at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\r'); }
   bool ends_field() const { return at_ >= text_.size() || text_[at_] == ',' || text_[at_] == '\n'; }
@@ -99,13 +93,12 @@ class CsvWalk {
     for (;; step()) {
       if (at_ >= text_.size())
         refuse_place(file_, field, "a quote is not closed", "the file ends within the field", "Add the closing quote");
-      if (text_[at_] != '"') {
+      if (text_[at_] != '"')
         field.text += text_[at_];
-      } else if (at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
+      else if (at_ + 1 < text_.size() && text_[at_ + 1] == '"')
         field.text += text_[++at_];
-      } else {
+      else
         break;
-      }
     }
     ++at_;
     skip_blanks();
@@ -120,18 +113,15 @@ class CsvWalk {
   int line_ = 1;
 };
 
-std::optional<double> number_of(const std::string& text) {
-  double value = 0;
-  const char* first = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto [end, error] = std::from_chars(first, text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-}  // namespace
-
+/// A file as RFC 4180 describes it: fields between commas, those in double quotes with anything in them, a doubled
+/// quote for one; blank lines and lines that begin with # are skipped, blanks around a field too. A byte order mark is
+/// passed over. Throws DataError with line and column: not readable, longer than 64 MB, an open quote, rows that have
+/// not as many fields as the first.
 std::vector<Row> read_csv(const fs::path& file) {
-  const std::string text = text_of(file);
+  std::string text = whole_text(file, std::uintmax_t{64} << 20, [&](const std::string& reason) {
+    throw DataError({file.string() + ": the table cannot be read", reason, "Check the path"});
+  });
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   CsvWalk walk(file, text);
   std::vector<Row> rows;
   while (auto row = walk.next()) {
@@ -143,19 +133,48 @@ std::vector<Row> read_csv(const fs::path& file) {
   return rows;
 }
 
-bool is_csv_number(const CsvField& field) { return number_of(field.text).has_value(); }
+bool is_csv_number(const CsvField& field) { return signed_number(field.text).has_value(); }
 
 double csv_number(const fs::path& file, const CsvField& field) {
-  if (const auto number = number_of(field.text)) return *number;
+  if (const auto number = signed_number(field.text)) return *number;
   refuse_place(file, field, fmt::format("\"{}\" is no number", field.text), "a finite number is expected",
                "Write it with a point for its decimals");
 }
 
+void check_keys(const fs::path& file, const Row& header) {
+  std::set<std::string> keys;
+  for (const CsvField& field : header) {
+    if (field.text.empty() || is_csv_number(field))
+      refuse_place(file, field, fmt::format("\"{}\" is no key", field.text), "the first row names what varies",
+                   "Write a key with its tables, such as solve.base.friction_angle_deg");
+    if (!keys.insert(field.text).second)
+      refuse_place(file, field, field.text + " is there twice", "one value would hide the other",
+                   "Leave one of the columns out");
+  }
+}
+
+}  // namespace
+
+MemberColumn column_of(std::string key, const std::vector<std::string>& texts, NumberReader number) {
+  MemberColumn column{std::move(key), {}, {}};
+  const bool numbers = std::ranges::all_of(texts, [&](const std::string& text) { return number(text).has_value(); });
+  for (const std::string& text : texts) {
+    if (numbers) {
+      column.values.push_back(*number(text));
+      continue;
+    }
+    const auto known = std::find(column.words.begin(), column.words.end(), text);
+    column.values.push_back(static_cast<double>(known - column.words.begin()));
+    if (known == column.words.end()) column.words.push_back(text);
+  }
+  return column;
+}
+
 std::vector<DensityRow> read_density(const fs::path& file) {
   std::vector<Row> rows = read_csv(file);
-  if (!rows.empty() && std::none_of(rows[0].begin(), rows[0].end(), is_csv_number)) rows.erase(rows.begin());
+  if (!rows.empty() && std::ranges::none_of(rows[0], is_csv_number)) rows.erase(rows.begin());
   const auto refuse = [&](const std::string& what, const std::string& why) {
-    throw DataError(Fault{file.string() + ": " + what, why, "Give lines of a value and its probability density"});
+    throw DataError({file.string() + ": " + what, why, "Give lines of a value and its probability density"});
   };
   if (rows.size() < 2) refuse("fewer than two rows", "no value lies between them");
   if (rows[0].size() != 2) refuse(fmt::format("{} columns", rows[0].size()), "two are expected");
@@ -170,9 +189,32 @@ std::vector<DensityRow> read_density(const fs::path& file) {
                    "Mend the density");
     densities.push_back(one);
   }
-  if (std::none_of(densities.begin(), densities.end(), [](const DensityRow& r) { return r.density > 0; }))
+  if (std::ranges::none_of(densities, [](const DensityRow& r) { return r.density > 0; }))
     refuse("all densities are 0", "no value could be drawn");
   return densities;
+}
+
+void take_listed(MemberTable& table, const std::filesystem::path& file) {
+  const std::vector<Row> rows = read_csv(file);
+  if (rows.size() < 2)
+    throw DataError({file.string() + ": no members", "it has no row below that of the keys",
+                     "Give a row of keys, then a row of values for each member"});
+  if (rows.size() - 1 > static_cast<std::size_t>(most_members))
+    throw DataError({fmt::format("{}: {} members", file.string(), rows.size() - 1),
+                     fmt::format("up to {} are run", most_members), "Give fewer"});
+  check_keys(file, rows[0]);
+  table.count = static_cast<std::int64_t>(rows.size() - 1);
+  for (std::size_t place = 0; place < rows[0].size(); ++place) {
+    const std::string& key = rows[0][place].text;
+    std::vector<std::string> texts;
+    for (std::size_t row = 1; row < rows.size(); ++row) {
+      const CsvField& field = rows[row][place];
+      if (field.text.empty())
+        refuse_place(file, field, "an empty field", fmt::format("{} has no value there", key), "Give one");
+      texts.push_back(field.text);
+    }
+    table.columns.push_back(column_of(key, texts, signed_number));
+  }
 }
 
 }  // namespace talus::preprocess

@@ -4,30 +4,21 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "common/ensemble/member_table.hpp"
 
 namespace talus::preprocess {
 
-/// A field and where it begins, both counted from 1.
-struct CsvField {
-  std::string text;
-  int line = 0, column = 0;
-};
+/// Reads the number that a text is; none where it is none.
+using NumberReader = std::optional<double> (*)(std::string_view text);
 
-/// A file as RFC 4180 describes it: fields between commas, those in double quotes with anything in them, a doubled
-/// quote for one; blank lines and lines that begin with # are skipped, blanks around a field too. A byte order mark is
-/// passed over. Throws DataError with line and column: not readable, longer than 64 MB, an open quote, rows that have
-/// not as many fields as the first.
-std::vector<std::vector<CsvField>> read_csv(const std::filesystem::path& file);
+/// A column of a key: numbers where all texts are, else words.
+MemberColumn column_of(std::string key, const std::vector<std::string>& texts, NumberReader number);
 
-/// A number of a file; throws DataError with line and column where it is none, or not finite.
-double csv_number(const std::filesystem::path& file, const CsvField& field);
-
-/// Whether the text of a field is a finite number.
-bool is_csv_number(const CsvField& field);
-
-/// A row of a table of probability density.
 struct DensityRow {
   double value = 0, density = 0;
 };
@@ -35,5 +26,10 @@ struct DensityRow {
 /// Values that grow and their densities, up to a factor; a first row of words is a header. Throws DataError with line
 /// and column: fewer than two rows, other than two columns, values that do not grow, negative densities, or all 0.
 std::vector<DensityRow> read_density(const std::filesystem::path& file);
+
+/// Puts the columns of a file of comma-separated values into a table: keys in the first row, members below. A column
+/// in which anything is no number is one of words. Throws DataError with line and column: not readable, an open quote,
+/// no members, more than most_members, keys that are empty or there twice, empty fields.
+void take_listed(MemberTable& table, const std::filesystem::path& file);
 
 }  // namespace talus::preprocess

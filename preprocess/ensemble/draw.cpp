@@ -2,23 +2,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/ensemble/draw.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <numeric>
-
+#include "common/ensemble/openturns.hpp"
 #include "common/error.hpp"
-#include "common/map/sum.hpp"
-#include "preprocess/ensemble/copula.hpp"
-#include "preprocess/ensemble/design.hpp"
-#include "preprocess/ensemble/listed_members.hpp"
+#include "common/map/statistics.hpp"
+#include "preprocess/ensemble/csv.hpp"
 #include "preprocess/ensemble/marginal.hpp"
 
 namespace talus::preprocess {
 namespace {
 
+constexpr std::size_t most_directions = 1111;  // of Sobol's sequence in OpenTURNS
+constexpr double most_improved = 2e5;          // members times keys of an optimal hypercube
+
+[[noreturn]] void refuse_design(const std::string& what, const std::string& why, const std::string& mend) {
+  throw RecipeError({"[ensemble]: " + what, why, mend});
+}
+
+void check_size(Design design, std::size_t members, std::size_t keys) {
+  const std::size_t directions = design == Design::sensitivity ? 2 * keys : design == Design::sobol ? keys : 0;
+  if (directions > most_directions)
+    refuse_design(fmt::format("{} keys vary", keys), fmt::format("Sobol's sequence has {} directions", most_directions),
+                  "Vary fewer, or take design = \"latin-hypercube\"");
+  if (design == Design::sensitivity && members < 2 * (keys + 2))
+    refuse_design(fmt::format("members = {} with design = \"sensitivity\"", members),
+                  fmt::format("{} keys need at least {}", keys, 2 * (keys + 2)), "Give more");
+  if (design == Design::optimal_hypercube && static_cast<double>(members * keys) > most_improved)
+    refuse_design(fmt::format("design = \"optimal-latin-hypercube\" with {} members of {} keys", members, keys),
+                  fmt::format("its strata are exchanged one by one; up to {:g} numbers are", most_improved),
+                  "Take design = \"sobol\", which fills the space as well");
+}
+
 [[noreturn]] void refuse_drawing(const std::string& what, const std::string& why, const std::string& mend) {
-  throw RecipeError(Fault{"[ensemble] " + what, why, mend});
+  throw RecipeError({"[ensemble] " + what, why, mend});
 }
 
 /// What a design that is no random sample leaves no room for.
@@ -49,14 +68,26 @@ void take_levels(MemberTable& table, const std::vector<std::vector<double>>& lev
     for (const auto& member : members) table.columns[d].values.push_back(levels[d].at(member[d]));
 }
 
+/// All combinations of one level of each key; the first key changes fastest.
 void draw_grid(MemberTable& table, const std::vector<Marginal>& marginals, int count) {
   std::vector<std::vector<double>> levels;
-  std::vector<std::size_t> counts;
+  double all = 1;
   for (const Marginal& marginal : marginals) {
     levels.push_back(marginal.levels(count));
-    counts.push_back(levels.back().size());
+    all *= static_cast<double>(levels.back().size());
   }
-  take_levels(table, levels, combinations(counts, most_members));
+  if (all > static_cast<double>(most_members))
+    refuse_design(fmt::format("design = \"full-grid\" of {:.3g} members", all),
+                  fmt::format("up to {} are run", most_members), "Give fewer levels, or vary fewer keys");
+  std::vector<std::vector<std::size_t>> members(static_cast<std::size_t>(all));
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    std::size_t left = n;
+    for (const auto& of_key : levels) {
+      members[n].push_back(left % of_key.size());
+      left /= of_key.size();
+    }
+  }
+  take_levels(table, levels, members);
 }
 
 /// The middle of all keys, then each key at its other levels.
@@ -108,6 +139,24 @@ std::string range_of(const MemberColumn& column) {
 }
 
 }  // namespace
+
+UnitDesign unit_design(Design design, int members, std::size_t keys, int seed) {
+  UnitDesign result;
+  auto count = static_cast<std::size_t>(members);
+  check_size(design, count, keys);
+  if (keys == 0) {
+    result.shares.resize(count);
+    return result;
+  }
+  if (design == Design::sensitivity) {
+    count /= keys + 2;
+    result.sample_size = static_cast<std::int64_t>(count);
+  }
+  result.shares = openturns::library().draw(design, count, keys, static_cast<unsigned long>(seed));
+  for (auto& shares : result.shares)
+    for (double& share : shares) share = std::clamp(share, 1e-12, 1 - 1e-12);
+  return result;
+}
 
 MemberTable draw_members(const EnsembleOptions& o) {
   if (!o.is_budget()) check_design(o);

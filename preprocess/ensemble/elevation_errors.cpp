@@ -9,13 +9,12 @@
 #include <numbers>
 
 #include "common/error.hpp"
-#include "common/map/statistics.hpp"
 
 namespace talus::preprocess {
 namespace {
 
 [[noreturn]] void refuse_errors(const std::string& what, const std::string& why, const std::string& mend) {
-  throw RecipeError(Fault{"[ensemble.elevation_error] " + what, why, mend});
+  throw RecipeError({"[ensemble.elevation_error] " + what, why, mend});
 }
 
 /// A seed for each member and part: numbers of the generator SplitMix64 (Steele, Lea and Flood 2014).

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/ensemble/options.hpp"
-#include "common/map/random_field.hpp"
+#include "common/map/fourier.hpp"
 #include "preprocess/scene/read_scene.hpp"
 
 namespace talus::preprocess {

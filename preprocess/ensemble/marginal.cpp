@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/ensemble/marginal.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "common/error.hpp"
 #include "preprocess/ensemble/csv.hpp"
@@ -21,7 +22,7 @@ constexpr double least_share = 1e-6;  // of a distribution that must be left bet
 
 [[noreturn]] void refuse_vary(const VaryOptions& o, const std::string& what, const std::string& why,
                               const std::string& mend) {
-  throw RecipeError(Fault{"[[ensemble.vary]] of " + o.key + ": " + what, why, mend});
+  throw RecipeError({"[[ensemble.vary]] of " + o.key + ": " + what, why, mend});
 }
 
 /// What is left of a distribution between low and high, where they are given.
@@ -62,13 +63,6 @@ AnyLaw tabulated(const VaryOptions& o) {
   return openturns::library().triangles(parts);
 }
 
-/// The shares of what has these weights.
-std::vector<double> shares_of(std::vector<double> weights) {
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  for (double& weight : weights) weight /= sum;
-  return weights;
-}
-
 /// What a discrete key chooses from, numbers in growing order, without what has no weight.
 struct Choices {
   std::vector<double> values;
@@ -82,8 +76,7 @@ Choices choices_of(const VaryOptions& o) {
   const std::size_t count = o.values.size() + o.words.size();
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  if (o.words.empty())
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return o.values[a] < o.values[b]; });
+  if (o.words.empty()) std::ranges::stable_sort(order, [&](auto a, auto b) { return o.values[a] < o.values[b]; });
   Choices choices;
   for (const std::size_t i : order) {
     if (!o.weights.empty() && !(o.weights[i] > 0)) continue;
@@ -93,7 +86,7 @@ Choices choices_of(const VaryOptions& o) {
   }
   const bool twice = o.words.empty()
                          ? std::adjacent_find(choices.values.begin(), choices.values.end()) != choices.values.end()
-                         : std::any_of(o.words.begin(), o.words.end(), [&](const std::string& word) {
+                         : std::ranges::any_of(o.words, [&](const std::string& word) {
                              return std::count(o.words.begin(), o.words.end(), word) > 1;
                            });
   if (twice) refuse_vary(o, "a value is there twice", "each has one weight", "Leave one out, and give it the weight");
@@ -114,12 +107,19 @@ AnyLaw continuous(const VaryOptions& o) {
   return laws.uniform(*o.low, *o.high);
 }
 
+std::size_t place_of_key(const std::vector<VaryOptions>& vary, const std::string& key) {
+  const auto found = std::ranges::find_if(vary, [&](const VaryOptions& one) { return one.key == key; });
+  return static_cast<std::size_t>(found - vary.begin());
+}
+
 }  // namespace
 
 Marginal::Marginal(const VaryOptions& options) {
   if (options.distribution == Distribution::discrete) {
     Choices choices = choices_of(options);
-    law_ = openturns::library().places(shares_of(choices.weights));
+    const double sum = std::accumulate(choices.weights.begin(), choices.weights.end(), 0.0);
+    for (double& weight : choices.weights) weight /= sum;
+    law_ = openturns::library().places(choices.weights);
     values_ = std::move(choices.values);
     words_ = std::move(choices.words);
     return;
@@ -153,6 +153,29 @@ std::vector<double> Marginal::levels(int count) const {
   std::vector<double> levels;
   for (int k = 0; k < count; ++k) levels.push_back(quantile((k + 0.5) / count));
   return levels;
+}
+
+std::shared_ptr<const openturns::Copula> copula_of(const std::vector<VaryOptions>& vary,
+                                                   const std::vector<CorrelationOptions>& correlations) {
+  if (correlations.empty()) return {};
+  std::vector<openturns::RankCorrelation> ranks;
+  std::set<std::pair<std::size_t, std::size_t>> pairs;
+  std::string listed;
+  for (const CorrelationOptions& one : correlations) {
+    const auto a = place_of_key(vary, one.keys.at(0)), b = place_of_key(vary, one.keys.at(1));
+    if (!pairs.emplace(std::minmax(a, b)).second)
+      throw RecipeError({fmt::format("[[ensemble.correlation]] of {} and {} is there twice", one.keys[0], one.keys[1]),
+                         "one would hide the other", "Leave one of them out"});
+    ranks.push_back({a, b, one.rank_correlation});
+    listed +=
+        fmt::format("{}{} and {}: {:g}", listed.empty() ? "" : "; ", one.keys[0], one.keys[1], one.rank_correlation);
+  }
+  auto copula = openturns::library().copula(vary.size(), ranks);
+  if (copula == nullptr)
+    throw RecipeError({"[[ensemble.correlation]]: the correlations contradict one another (" + listed + ")",
+                       "what goes with a third goes with its companions: their matrix is not positive definite",
+                       "Make some of them smaller, or give those that are missing between the same keys"});
+  return copula;
 }
 
 }  // namespace talus::preprocess

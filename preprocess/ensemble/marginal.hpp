@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The distribution of one key that varies.
+// The distribution of one key that varies, and how keys vary together.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,5 +33,10 @@ class Marginal {
   std::vector<double> values_;  // of a discrete one, growing
   std::vector<std::string> words_;
 };
+
+/// The normal copula with Spearman's rank correlations between keys, whose order `vary` gives; none where no keys vary
+/// together. Throws RecipeError where their matrix is not positive definite, or one pair is there twice.
+std::shared_ptr<const openturns::Copula> copula_of(const std::vector<VaryOptions>& vary,
+                                                   const std::vector<CorrelationOptions>& correlations);
 
 }  // namespace talus::preprocess

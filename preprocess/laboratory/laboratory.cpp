@@ -7,12 +7,11 @@
 #include <cmath>
 #include <utility>
 
-#include "common/gis/grid_limits.hpp"
+#include "common/gis/resampling.hpp"
 #include "preprocess/options/laboratory.hpp"
-#include "preprocess/particles/shift.hpp"
+#include "preprocess/particles/seed.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 constexpr double rounding = 1e-6;  // of a cell: what a length written in decimals may be off by
@@ -58,9 +57,8 @@ std::vector<BoxOptions> pieces_of(const BoxOptions& box, const GridOptions& grid
 /// All boxes as such pieces, with the index of the box that each belongs to.
 std::vector<std::pair<BoxOptions, std::size_t>> all_pieces(const Options& options) {
   std::vector<std::pair<BoxOptions, std::size_t>> pieces;
-  for (std::size_t b = 0; b < options.box.size(); ++b) {
+  for (std::size_t b = 0; b < options.box.size(); ++b)
     for (BoxOptions& piece : pieces_of(options.box[b], options.grid)) pieces.emplace_back(std::move(piece), b);
-  }
   return pieces;
 }
 
@@ -68,9 +66,8 @@ Raster cover_of(const MapGrid& grid, const BoxOptions& box) {
   Raster cover{grid, std::vector<double>(grid.count(), 0.0)};
   for (int row = 0; row < grid.rows; ++row) {
     const double in_row = covered(grid.south + row * grid.cell, grid.cell, box.south, box.north);
-    for (int column = 0; in_row > 0 && column < grid.columns; ++column) {
+    for (int column = 0; in_row > 0 && column < grid.columns; ++column)
       cover.at(column, row) = in_row * covered(grid.west + column * grid.cell, grid.cell, box.west, box.east);
-    }
   }
   return cover;
 }
@@ -84,12 +81,10 @@ Raster laboratory_ground(const Options& options) {
   require_told_apart(grid, "[preprocess.laboratory]");
   require_room(grid.columns, grid.rows, bytes_per_cell, "[preprocess.laboratory]", "Give fewer columns or rows");
   Raster ground{grid, std::vector<double>(grid.count())};
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      ground.at(column, row) =
-          lab.ground + lab.slope_x * (grid.x(column) - grid.west) + lab.slope_y * (grid.y(row) - grid.south);
-    }
-  }
+  each_cell(grid, [&](int column, int row) {
+    ground.at(column, row) =
+        lab.ground + lab.slope_x * (grid.x(column) - grid.west) + lab.slope_y * (grid.y(row) - grid.south);
+  });
   return ground;
 }
 

@@ -3,8 +3,6 @@
 // Laboratory scenes: boxes of material on or above a plane, without any elevation model.
 #pragma once
 
-#include <vector>
-
 #include "common/domain/domain.hpp"
 #include "preprocess/options/options.hpp"
 #include "preprocess/release/releases.hpp"
@@ -16,8 +14,8 @@ namespace talus::preprocess {
 /// ground_m + slope_x (x - west_m) + slope_y (y - south_m) at the cells' centres.
 Raster laboratory_ground(const Options& options);
 
-/// A box as a vertical thickness: its height times the part of each cell that it covers. Where its top slopes, that of
-/// the points under it.
+/// A box as a vertical thickness: its height times the part of each cell that it covers. Under a sloping top, that of
+/// the points.
 Release box_release(const Options& options, std::size_t item);
 
 /// The ground with the tops of the boxes on it, each weighed by the part of the cell it covers.

@@ -10,8 +10,6 @@
 #include <utility>
 
 #include "common/error.hpp"
-#include "common/map/bilinear.hpp"
-#include "common/map/polygon.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 
 namespace talus::preprocess {
@@ -25,12 +23,11 @@ struct Footprint {
 
 double height_of(const MapPolygon& polygon, std::size_t number, const ObstacleOptions& o) {
   if (o.height > 0) return o.height;
-  for (const auto& [name, value] : polygon.numbers) {
+  for (const auto& [name, value] : polygon.numbers)
     if (name == o.attribute && value > 0 && std::isfinite(value)) return value;
-  }
-  throw DataError(Fault{
-      fmt::format("{}: polygon {} has no positive number \"{}\"", o.polygons.string(), number, o.attribute),
-      "the obstacle's height is not known", "Name the attribute in the recipe (attribute = ...), or give height_m"});
+  throw DataError(
+      {fmt::format("{}: polygon {} has no positive number \"{}\"", o.polygons.string(), number, o.attribute),
+       "the obstacle's height is not known", "Name the attribute in the recipe (attribute = ...), or give height_m"});
 }
 
 /// An upright body over polygons, from `depth` below the ground to their heights above it. It looks up ground and
@@ -44,10 +41,9 @@ class UprightBody {
   double operator()(double x, double y, double z) {
     if (x != x_ || y != y_) look_up(x, y);
     double nearest = 1e30;
-    for (std::size_t f = 0; f < footprints_.size(); ++f) {
+    for (std::size_t f = 0; f < footprints_.size(); ++f)
       nearest = std::min(nearest,
                          std::max({across_[f], z - ground_here_ - footprints_[f].height, ground_here_ - depth_ - z}));
-    }
     return nearest;
   }
 
@@ -79,12 +75,10 @@ SolidBody upright_body(const ObstacleOptions& o, const std::shared_ptr<const Ras
     const double height = height_of(polygons[p], p + 1, o);
     for (const auto& corner : polygons[p].rings.front()) {
       const double z = bilinear(ground, corner[0], corner[1]);
-      if (std::isnan(z)) {
-        throw DataError(Fault{fmt::format("{}: polygon {} reaches ({:.1f}, {:.1f}), where there is no ground",
-                                          o.polygons.string(), p + 1, corner[0], corner[1]),
-                              "an obstacle stands on known ground",
-                              "Clip the polygon, or give a larger elevation model"});
-      }
+      if (std::isnan(z))
+        throw DataError({fmt::format("{}: polygon {} reaches ({:.1f}, {:.1f}), where there is no ground",
+                                     o.polygons.string(), p + 1, corner[0], corner[1]),
+                         "an obstacle stands on known ground", "Clip the polygon, or give a larger elevation model"});
       for (std::size_t a = 0; a < 2; ++a) {
         body.low[a] = std::min(body.low[a], corner[a]);
         body.high[a] = std::max(body.high[a], corner[a]);
@@ -95,20 +89,17 @@ SolidBody upright_body(const ObstacleOptions& o, const std::shared_ptr<const Ras
     footprints.push_back({polygons[p], height});
   }
   // Between the corners the ground may rise and fall.
-  for (int row = 0; row < ground.grid.rows; ++row) {
-    for (int column = 0; column < ground.grid.columns; ++column) {
-      const double x = ground.grid.x(column), y = ground.grid.y(row), z = ground.at(column, row),
-                   margin = ground.grid.cell;
-      if (x < body.low[0] - margin || x > body.high[0] + margin || y < body.low[1] - margin ||
-          y > body.high[1] + margin)
-        continue;
-      for (const Footprint& f : footprints) {
-        if (std::isnan(z) || signed_distance(f.polygon, x, y) > margin) continue;
-        body.low[2] = std::min(body.low[2], z - depth);
-        body.high[2] = std::max(body.high[2], z + f.height);
-      }
+  each_cell(ground.grid, [&](int column, int row) {
+    const double x = ground.grid.x(column), y = ground.grid.y(row), z = ground.at(column, row),
+                 margin = ground.grid.cell;
+    if (x < body.low[0] - margin || x > body.high[0] + margin || y < body.low[1] - margin || y > body.high[1] + margin)
+      return;
+    for (const Footprint& f : footprints) {
+      if (std::isnan(z) || signed_distance(f.polygon, x, y) > margin) continue;
+      body.low[2] = std::min(body.low[2], z - depth);
+      body.high[2] = std::max(body.high[2], z + f.height);
     }
-  }
+  });
   body.distance = UprightBody(std::move(footprints), shared_ground, depth);
   return body;
 }

@@ -4,11 +4,10 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/domain/level_set.hpp"
-#include "common/map/places.hpp"
+#include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
 #include "preprocess/options/options.hpp"
 
@@ -22,8 +21,7 @@ std::vector<SolidBody> upright_obstacles(const std::vector<ObstacleOptions>& obs
 /// Where the obstacles stand on a map of this CRS. Throws DataError as above.
 std::vector<MapPlace> obstacle_places(const std::vector<ObstacleOptions>& obstacles, const std::string& crs_wkt);
 
-/// Voxels that show a body as the background grid will meet it, and thin walls as well: a quarter of the smaller
-/// spacing [m].
+/// Voxels that show a body as the grid will meet it, and thin walls too: a quarter of the smaller spacing [m].
 double obstacle_voxel(double spacing, double layer_height);
 
 }  // namespace talus::preprocess

@@ -31,29 +31,28 @@ struct GridOptions {
   bool stands_alone() const {
     return spacing > 0 && is_length(spacing) && is_length(layer_height) && three_positive(points_per_cell);
   }
-  /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v) {
     v.number("spacing_m", spacing, recipe::not_negative,
              "horizontal spacing h of the grid; 0 = the cell of the first DEM");
-    v.needs(is_length(spacing), fault(fmt::format("grid.spacing_m = {}", spacing), "it must be positive",
-                                      "Give a length in metres, or 0 for the cell of the first DEM"));
+    need(v, is_length(spacing), fmt::format("grid.spacing_m = {}", spacing), "it must be positive",
+         "Give a length in metres, or 0 for the cell of the first DEM");
     v.number(
         "layer_height_m", layer_height, recipe::not_negative,
         "vertical spacing h_z of the grid; 0 = half the median thickness of the release (by volume), at most h; in a "
         "laboratory h");
-    v.needs(is_length(layer_height), fault(fmt::format("grid.layer_height_m = {}", layer_height), "it must be positive",
-                                           "Give a length in metres, or 0 for one that suits the release"));
+    need(v, is_length(layer_height), fmt::format("grid.layer_height_m = {}", layer_height), "it must be positive",
+         "Give a length in metres, or 0 for one that suits the release");
     v.integers("points_per_cell", points_per_cell, recipe::Range{1, 64}, "material points along x, y and height");
-    v.needs(three_positive(points_per_cell),
-            fault(fmt::format("grid.points_per_cell = [{}]", fmt::join(points_per_cell, ", ")),
-                  "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]"));
+    need(v, three_positive(points_per_cell),
+         fmt::format("grid.points_per_cell = [{}]", fmt::join(points_per_cell, ", ")),
+         "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]");
     v.number("jitter", jitter, recipe::Range{0, 0.5},
              "random shift of the points, as a part of their spacing; equal for equal points");
     v.numbers("extent_m", extent, recipe::any,
               "[west, south, east, north] of the working grid, as gdalwarp -te; empty = where all DEMs overlap");
-    v.needs(extent.empty() || (extent.size() == 4 && extent[0] < extent[2] && extent[1] < extent[3]),
-            fault(fmt::format("grid.extent_m = [{}]", fmt::join(extent, ", ")),
-                  "it must be west, south, east and north, west below east and south below north", "Sort them so"));
+    need(v, extent.empty() || (extent.size() == 4 && extent[0] < extent[2] && extent[1] < extent[3]),
+         fmt::format("grid.extent_m = [{}]", fmt::join(extent, ", ")),
+         "it must be west, south, east and north, west below east and south below north", "Sort them so");
     recipe::choice(
         v, "edge_nodata", edge_nodata, {{"refuse", EdgeNodata::refuse}, {"outside", EdgeNodata::outside}},
         "cells without elevation that reach the edge of the grid: refuse them, or leave them outside the domain");
@@ -62,7 +61,7 @@ struct GridOptions {
  private:
   static bool is_length(double value) { return value >= 0 && std::isfinite(value); }
   static bool three_positive(const std::vector<int>& numbers) {
-    return numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(), [](int n) { return n > 0; });
+    return numbers.size() == 3 && std::ranges::all_of(numbers, [](int n) { return n > 0; });
   }
 };
 

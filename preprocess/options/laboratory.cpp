@@ -12,21 +12,16 @@
 #include "preprocess/options/options.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 constexpr double rounding = 1e-6;  // of a cell: what a length written in decimals may be off by
 
 double layer_height(const GridOptions& grid) { return grid.layer_height > 0 ? grid.layer_height : grid.spacing; }
 
-}  // namespace
-
-namespace {
-
-/// This function declares that keys of the other ways are left out.
+/// Declares that keys of the other ways are left out.
 void need_no_other_way(recipe::Visitor& v, const Options& o) {
   const auto exclude = [&](bool given, const std::string& what, const char* why, const char* mend) {
-    v.needs(!o.in_laboratory() || !given, fault(what + " is given with a laboratory", why, mend));
+    need(v, !o.in_laboratory() || !given, what + " is given with a laboratory", why, mend);
   };
   const char* two_ways = "they belong to different ways";
   const char* choose = "Leave it out, or give elevation models instead of [preprocess.laboratory]";
@@ -40,68 +35,6 @@ void need_no_other_way(recipe::Visitor& v, const Options& o) {
   exclude(!o.grid.extent.empty(), "grid.extent_m", "there is no elevation model to crop",
           "Use cells and corner_m of the laboratory");
 }
-
-}  // namespace
-
-void LaboratoryOptions::describe(recipe::Visitor& v, const Options& all) {
-  const bool ignored = !all.in_laboratory();
-  const std::string place = "[preprocess.laboratory]";
-  recipe::fixed_list<int>(v, "cells", {&columns, &rows}, recipe::not_negative,
-                          "from west to east, from south to north; [0, 0] = no laboratory", place);
-  need_no_other_way(v, all);
-  v.needs(ignored || has_cells(), fault(fmt::format("laboratory.cells = [{}, {}]", columns, rows),
-                                        "both must be positive", "Give the number of cells along x and y"));
-  v.needs(ignored || all.grid.spacing > 0,
-          fault("grid.spacing_m is not given", "a laboratory has no elevation model to take it from",
-                "Give the width of a cell in metres"));
-  v.needs(ignored || !all.box.empty() || all.no_release,
-          fault("a laboratory without [[preprocess.box]]", "nothing would move",
-                "Give at least one box of material, or no_release = true with [[solve.inflow]]"));
-  recipe::fixed_list<double>(v, "corner_m", {&west, &south, &ground}, recipe::any,
-                             "south-western corner: easting, northing, elevation of the ground", place);
-  recipe::fixed_list<double>(v, "slope", {&slope_x, &slope_y}, recipe::any,
-                             "rise of the ground per metre towards the east and the north", place);
-}
-
-void BoxOptions::describe(recipe::Visitor& v) {
-  v.text("name", name, "name of this box; empty = box-1, box-2, ...");
-  recipe::fixed_list<double>(v, "extent_m", {&west, &south, &east, &north, &bottom, &top}, recipe::any,
-                             "[west, south, east, north, bottom, top], the last two above the ground; multiples of the "
-                             "points' spacing",
-                             "[[preprocess.box]]");
-  v.needs(!(bottom < 0), fault(fmt::format("box: bottom = {} in extent_m", bottom), "it lies below the ground",
-                               "Give a height above the ground"));
-  v.optional_number("top_east_m", top_east, recipe::not_negative,
-                    "upper side at the eastern end, where it slopes; none = that of extent_m");
-}
-
-std::array<BoxSide, 3> sides_of(const BoxOptions& b) {
-  return {{{"west", "east", b.west, b.east},
-           {"south", "north", b.south, b.north},
-           {"bottom", "top", b.bottom, std::max(b.top, b.top_east.value_or(b.top))}}};
-}
-
-std::string box_name(const BoxOptions& box, std::size_t item) {
-  return box.name.empty() ? fmt::format("box-{}", item + 1) : box.name;
-}
-
-std::array<double, 3> point_spacing(const GridOptions& grid) {
-  const auto& n = grid.points_per_cell;
-  return {grid.spacing / n.at(0), grid.spacing / n.at(1), layer_height(grid) / n.at(2)};
-}
-
-MapGrid laboratory_grid(const Options& options) {
-  const LaboratoryOptions& lab = options.laboratory;
-  MapGrid grid;
-  grid.columns = lab.columns;
-  grid.rows = lab.rows;
-  grid.west = lab.west;
-  grid.south = lab.south;
-  grid.cell = options.grid.spacing;
-  return grid;
-}
-
-namespace {
 
 /// The faults that boxes have with the grid and with one another.
 class BoxChecker {
@@ -127,9 +60,8 @@ class BoxChecker {
     if (std::min(b.top, b.top_east.value_or(b.top)) < b.bottom && b.top_east)
       add(fmt::format("box {}: top = {}, top_east_m = {}, bottom = {}", item + 1, b.top, *b.top_east, b.bottom),
           "the top falls below the bottom", "Give tops from the bottom on, and end the box where they meet");
-    for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t a = 0; a < 3; ++a)
       if (extends(sides[a], item)) fits(sides[a], spacing[a], item);
-    }
     const MapGrid map = laboratory_grid(o_);
     inside(sides[0], map.west, map.east(), item);
     inside(sides[1], map.south, map.north(), item);
@@ -165,9 +97,8 @@ class BoxChecker {
       for (std::size_t j = i + 1; j < o_.box.size(); ++j) {
         const auto a = sides_of(o_.box[i]), b = sides_of(o_.box[j]);
         bool shared = true;
-        for (std::size_t s = 0; s < 3; ++s) {
+        for (std::size_t s = 0; s < 3; ++s)
           shared = shared && std::min(a[s].high, b[s].high) - std::max(a[s].low, b[s].low) > rounding * o_.grid.spacing;
-        }
         if (shared)
           add(fmt::format("{} and {} overlap", box_name(o_.box[i], i), box_name(o_.box[j], j)),
               "the material there would count twice", "Move one, or cut it into boxes that only touch");
@@ -181,6 +112,62 @@ class BoxChecker {
 };
 
 }  // namespace
+
+void LaboratoryOptions::describe(recipe::Visitor& v, const Options& all) {
+  const bool ignored = !all.in_laboratory();
+  const std::string place = "[preprocess.laboratory]";
+  recipe::fixed_list<int>(v, "cells", {&columns, &rows}, recipe::not_negative,
+                          "from west to east, from south to north; [0, 0] = no laboratory", place);
+  need_no_other_way(v, all);
+  need(v, ignored || has_cells(), fmt::format("laboratory.cells = [{}, {}]", columns, rows), "both must be positive",
+       "Give the number of cells along x and y");
+  need(v, ignored || all.grid.spacing > 0, "grid.spacing_m is not given",
+       "a laboratory has no elevation model to take it from", "Give the width of a cell in metres");
+  need(v, ignored || !all.box.empty() || all.no_release, "a laboratory without [[preprocess.box]]",
+       "nothing would move", "Give at least one box of material, or no_release = true with [[solve.inflow]]");
+  recipe::fixed_list<double>(v, "corner_m", {&west, &south, &ground}, recipe::any,
+                             "south-western corner: easting, northing, elevation of the ground", place);
+  recipe::fixed_list<double>(v, "slope", {&slope_x, &slope_y}, recipe::any,
+                             "rise of the ground per metre towards the east and the north", place);
+}
+
+void BoxOptions::describe(recipe::Visitor& v) {
+  v.text("name", name, "name of this box; empty = box-1, box-2, ...");
+  recipe::fixed_list<double>(v, "extent_m", {&west, &south, &east, &north, &bottom, &top}, recipe::any,
+                             "[west, south, east, north, bottom, top], the last two above the ground; multiples of the "
+                             "points' spacing",
+                             "[[preprocess.box]]");
+  need(v, !(bottom < 0), fmt::format("box: bottom = {} in extent_m", bottom), "it lies below the ground",
+       "Give a height above the ground");
+  v.optional_number("top_east_m", top_east, recipe::not_negative,
+                    "upper side at the eastern end, where it slopes; none = that of extent_m");
+}
+
+std::array<BoxSide, 3> sides_of(const BoxOptions& b) {
+  return {{{"west", "east", b.west, b.east},
+           {"south", "north", b.south, b.north},
+           {"bottom", "top", b.bottom, std::max(b.top, b.top_east.value_or(b.top))}}};
+}
+
+std::string box_name(const BoxOptions& box, std::size_t item) {
+  return box.name.empty() ? fmt::format("box-{}", item + 1) : box.name;
+}
+
+std::array<double, 3> point_spacing(const GridOptions& grid) {
+  const auto& n = grid.points_per_cell;
+  return {grid.spacing / n.at(0), grid.spacing / n.at(1), layer_height(grid) / n.at(2)};
+}
+
+MapGrid laboratory_grid(const Options& options) {
+  const LaboratoryOptions& lab = options.laboratory;
+  MapGrid grid;
+  grid.columns = lab.columns;
+  grid.rows = lab.rows;
+  grid.west = lab.west;
+  grid.south = lab.south;
+  grid.cell = options.grid.spacing;
+  return grid;
+}
 
 void check_boxes(const Options& options, std::vector<Fault>& faults) { BoxChecker(options, faults).check(); }
 

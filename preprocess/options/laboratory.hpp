@@ -17,19 +17,15 @@ namespace talus::preprocess {
 struct GridOptions;
 struct Options;
 
-/// The keys of [preprocess.laboratory]: a scene without elevation models, on a level or tilted plane whose cells are as
-/// wide as grid.spacing_m.
+/// The keys of [preprocess.laboratory]: a level or tilted plane without elevation models, in cells of grid.spacing_m.
 struct LaboratoryOptions {
   int columns = 0, rows = 0;   ///< 0: no laboratory
   double west = 0, south = 0;  ///< [m]
   double ground = 0;           ///< elevation of the south-western corner [m]
   double slope_x = 0, slope_y = 0;
 
-  /// Whether there is a laboratory.
   bool given() const { return columns > 0 || rows > 0; }
-  /// Whether it has both columns and rows.
   bool has_cells() const { return columns > 0 && rows > 0; }
-  /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const Options& all);
 };
 
@@ -41,7 +37,6 @@ struct BoxOptions {
 
   /// The height of the top over a place between west and east [m].
   double top_at(double x) const { return top + (top_east.value_or(top) - top) * (x - west) / (east - west); }
-  /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };
 

@@ -11,12 +11,8 @@
 #include "preprocess/options/elevation.hpp"
 #include "preprocess/options/grid.hpp"
 #include "preprocess/options/laboratory.hpp"
-#include "preprocess/options/obstacles.hpp"
 #include "preprocess/options/places.hpp"
 #include "preprocess/options/release.hpp"
-#include "preprocess/options/source.hpp"
-#include "preprocess/options/survey.hpp"
-#include "preprocess/options/voids.hpp"
 
 namespace talus::preprocess {
 
@@ -46,9 +42,9 @@ struct Options : ElevationOptions {
   bool in_laboratory() const { return laboratory.given() || !box.empty(); }
   /// The way that is meant, of options in which recipe::find_unmet() finds nothing.
   Way way() const;
-  /// The method declares all keys of [preprocess] and its tables with defaults, help and what they need of one another.
+  /// Declares all keys of [preprocess] and its tables with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
-  /// The method adds the faults that the boxes of a laboratory have together to `faults`.
+  /// Adds the faults that the boxes of a laboratory have together to `faults`.
   void check(std::vector<Fault>& faults) const;
 };
 

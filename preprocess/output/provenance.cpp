@@ -17,17 +17,15 @@ Facts facts_of(const Prepared& prepared) {
               {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : as_facts(prepared.total)) facts.push_back(std::move(fact));
-  if (prepared.sliding_surface) {
+  if (prepared.sliding_surface)
     facts.emplace_back(
         "sliding_surface",
         fmt::format(
             "computed from the outline, curvature {:.4g} 1/m, at most {:.4g} m deep, follows the ground in {} cells",
             prepared.sliding_surface->curvature, prepared.sliding_surface->depth, prepared.sliding_surface->touching));
-  }
   if (prepared.by_release.size() < 2) return facts;
-  for (const auto& [name, volumes] : prepared.by_release) {
+  for (const auto& [name, volumes] : prepared.by_release)
     for (auto& [key, value] : as_facts(volumes)) facts.emplace_back(fmt::format("{}.{}", name, key), std::move(value));
-  }
   return facts;
 }
 
@@ -53,8 +51,8 @@ void require_unchanged(const Facts& inputs) {
     if (end == std::string::npos) continue;
     const std::string file = value.substr(0, end);
     if (sha256(file) != value.substr(end + checksum_mark.size()))
-      throw DataError(Fault{file + ": it is not what it was when this stage began", "something writes to it",
-                            "Run talus-preprocess again once it stays as it is"});
+      throw DataError({file + ": it is not what it was when this stage began", "something writes to it",
+                       "Run talus-preprocess again once it stays as it is"});
   }
 }
 

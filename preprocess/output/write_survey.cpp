@@ -6,24 +6,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/error.hpp"
 #include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
-#include "common/gis/raster_writer.hpp"
-#include "common/map/crop.hpp"
-#include "common/map/sum.hpp"
+#include "common/map/raster.hpp"
+#include "common/map/statistics.hpp"
 #include "common/qgis/project.hpp"
 #include "common/qgis/style.hpp"
 #include "common/stage/findings.hpp"
-#include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/survey/order.hpp"
-#include "preprocess/survey/survey_json.hpp"
+#include "preprocess/survey/change.hpp"
+#include "preprocess/survey/survey.hpp"
 
 namespace talus::preprocess {
-
 namespace fs = std::filesystem;
 
 namespace {
@@ -32,17 +28,23 @@ const std::vector<double> change_classes{0.5, 1, 2, 5, 10, 25, 50};
 const std::vector<double> thickness_classes{0.1, 0.5, 1, 2, 5, 10, 25, 50, 100};
 const std::vector<double> sigma_classes{0.05, 0.1, 0.2, 0.5, 1, 2, 5};
 
+RasterStyle change_style() { return difference_style(change_classes, "m"); }
+RasterStyle thickness_style() { return class_style(thickness_classes, "m"); }
+RasterStyle sigma_style() { return class_style(sigma_classes, "m"); }
+
 /// What every raster carries: of which domain's preparation it is.
-RasterTags tags_of(const char* description, const std::string& id) {
-  return {fmt::format("{} [m]", description), "m", {{"SOURCE", "Talus " + version()}, {"DOMAIN_ID", id}}};
+RasterTags tags_of(const std::string& description, const std::string& id, const char* unit) {
+  return {description, unit, {{"SOURCE", "Talus " + version()}, {"DOMAIN_ID", id}}};
+}
+RasterTags tags_of(const std::string& description, const std::string& id) {
+  return tags_of(description + " [m]", id, "m");
 }
 
 /// The range that makes the mean over a typical slide as uncertain as the variogram does; for the resampling of scores.
-double correlation_length(const Survey& survey, const Prepared* prepared) {
+double correlation_length(const Survey& survey, const SurveyedSlide* slide) {
   double area = 100 * survey.grid.cell * survey.grid.cell;
-  if (prepared && prepared->slide) {
-    for (const auto& side : prepared->slide->volumes) area = std::max(area, side.volume.area);
-  }
+  if (slide)
+    for (const auto& side : slide->volumes) area = std::max(area, side.volume.area);
   return survey.errors.variogram().equivalent_range(area, survey.grid.cell);
 }
 
@@ -86,7 +88,7 @@ class BlockFiles {
         raw.add(d, sigma);
         if (!(std::abs(d) > level_of_detection(sigma))) continue;
         believed.add(d, sigma);
-        (d > 0 ? rise_ : fall_).add(std::abs(d), block.before.values[i] + d / 2);
+        order_.add(d, block.before.values[i]);
       }
     });
     for (RasterWriter* file : {&before_, &after_, &difference_}) file->finish();
@@ -96,21 +98,9 @@ class BlockFiles {
   }
 
   /// What rose and fell, of believed change; after walk().
-  Order order() const {
-    const double area = survey_.grid.cell * survey_.grid.cell;
-    return {rise_.volume.value() * area, fall_.volume.value() * area, rise_.height(), fall_.height()};
-  }
+  Order order() const { return order_.order(survey_.grid.cell); }
 
  private:
-  struct Heights {
-    Sum volume, moment;
-    void add(double size, double height) {
-      volume.add(size);
-      moment.add(size * height);
-    }
-    double height() const { return volume.value() > 0 ? moment.value() / volume.value() : 0; }
-  };
-
   Raster as_it_came(const Block& block) const {
     Elevation after = survey_.after;
     after.placement = {};
@@ -122,14 +112,12 @@ class BlockFiles {
   const Survey& survey_;
   RasterWriter before_, after_, difference_;
   std::optional<RasterWriter> sigma_, unaligned_;
-  Heights rise_, fall_;
+  OrderSum order_;
 };
 
 /// 1 where ground counted as stable, 0 where not, nodata where nobody looked.
 void write_stable(const fs::path& file, const Survey& survey, const std::string& id) {
-  RasterWriter writer(
-      file, survey.grid,
-      {"ground that counted as stable [1]", "1", {{"SOURCE", "Talus " + version()}, {"DOMAIN_ID", id}}});
+  RasterWriter writer(file, survey.grid, tags_of("ground that counted as stable [1]", id, "1"));
   for (const auto& [grid, stable] : survey.stable) {
     const MapGrid part = shared_part(grid, survey.grid);  // the rest of it was shared only before the later model moved
     if (part.count() > 0) writer.write(cut_to({grid, std::vector<double>(stable.begin(), stable.end())}, part));
@@ -142,7 +130,7 @@ std::string words(const VolumeWithError& v) {
   return fmt::format("{} +- {} m3", grouped(v.volume), grouped(v.error));
 }
 
-void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* prepared,
+void say_volumes(const Survey& survey, const Budgets& budgets, const SurveyedSlide* slide,
                  std::vector<std::string>& lines) {
   const auto line = [&](const std::string& what, const Budget& b) {
     lines.push_back(fmt::format("{}: erosion {}, deposition {}, net {}", what, words(b.erosion), words(b.deposition),
@@ -152,8 +140,8 @@ void say_volumes(const Survey& survey, const Budgets& budgets, const Prepared* p
   line(fmt::format("difference beyond its level of detection ({:.2f} m at least)",
                    level_of_detection(survey.errors.sigma(0))),
        budgets.thresholded);
-  if (!prepared || !prepared->slide) return;
-  for (const auto& side : prepared->slide->volumes)
+  if (!slide) return;
+  for (const auto& side : slide->volumes)
     lines.push_back(
         fmt::format("{} as surveyed: {} on {} m2", side.name, words(side.volume), grouped(side.volume.area)));
 }
@@ -167,15 +155,6 @@ void put(std::vector<fs::path>& files, const fs::path& file, const Raster& raste
   files.push_back(file);
 }
 
-/// The surface that the source slides on; nodata outside the source.
-Raster bed_of_source(const Domain& domain) {
-  Raster bed = domain.terrain;
-  for (std::size_t i = 0; i < bed.values.size(); ++i) {
-    if (!(domain.release_thickness.values[i] > 0)) bed.values[i] = std::numeric_limits<double>::quiet_NaN();
-  }
-  return bed;
-}
-
 /// Everything at once: outlines over differences over the ground.
 void write_project(const fs::path& folder, const Survey& survey, std::vector<fs::path>& files) {
   const auto is_there = [&](const char* name) {
@@ -185,27 +164,25 @@ void write_project(const fs::path& folder, const Survey& survey, std::vector<fs:
                       survey.grid.crs_wkt,
                       {survey.grid.west, survey.grid.south, survey.grid.east(), survey.grid.north()},
                       {}};
-  ProjectGroup outlines{"Outlines", {}}, change{"Change", {}}, ground{"Ground", {}};
-  if (is_there("outlines.gpkg")) {
-    outlines.layers.push_back(
-        {"source", "outlines.gpkg|layername=source", true, OutlineStyle{{0.0, 0.45, 0.35}, 0.6, false}});
-    outlines.layers.push_back(
-        {"deposit", "outlines.gpkg|layername=deposit", true, OutlineStyle{{0.05, 0.25, 0.65}, 0.6, true}});
-    project.groups.push_back(outlines);
-  }
+  ProjectGroup change{"Change", {}};
+  if (is_there("outlines.gpkg"))
+    project.groups.push_back(
+        {"Outlines",
+         {{"source", "outlines.gpkg|layername=source", true, OutlineStyle{{0.0, 0.45, 0.35}, 0.6, false}},
+          {"deposit", "outlines.gpkg|layername=deposit", true, OutlineStyle{{0.05, 0.25, 0.65}, 0.6, true}}}});
   const auto add = [&](const char* name, const char* words, bool shown, const RasterStyle& style) {
     if (is_there(name)) change.layers.push_back({words, name, shown, style});
   };
-  add("slide_difference.tif", "difference in the slide", true, difference_style(change_classes, "m"));
-  add("difference.tif", "difference", !is_there("slide_difference.tif"), difference_style(change_classes, "m"));
-  add("difference_unaligned.tif", "difference as the models came", false, difference_style(change_classes, "m"));
-  add("difference_sigma.tif", "standard error of the difference", false, class_style(sigma_classes, "m"));
-  add("source_thickness.tif", "source, thickness", false, class_style(thickness_classes, "m"));
-  add("deposit_surveyed.tif", "deposit, rise of the surface", false, class_style(thickness_classes, "m"));
-  ground.layers = {{"surface after", "after_aligned.tif", false, HillshadeStyle{}},
-                   {"surface before", "before_aligned.tif", true, HillshadeStyle{}}};
+  add("slide_difference.tif", "difference in the slide", true, change_style());
+  add("difference.tif", "difference", !is_there("slide_difference.tif"), change_style());
+  add("difference_unaligned.tif", "difference as the models came", false, change_style());
+  add("difference_sigma.tif", "standard error of the difference", false, sigma_style());
+  add("source_thickness.tif", "source, thickness", false, thickness_style());
+  add("deposit_surveyed.tif", "deposit, rise of the surface", false, thickness_style());
   project.groups.push_back(change);
-  project.groups.push_back(ground);
+  project.groups.push_back({"Ground",
+                            {{"surface after", "after_aligned.tif", false, HillshadeStyle{}},
+                             {"surface before", "before_aligned.tif", true, HillshadeStyle{}}}});
   files.push_back(folder / "survey.qgs");
   write_qgis_project(files.back(), project);
 }
@@ -217,11 +194,12 @@ std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepa
   std::vector<fs::path> files;
   const Domain& domain = prepared.domain;
   put(files, folder / "source_thickness.tif", domain.release_thickness,
-      tags_of("thickness of the source, vertical", fact(domain.provenance, domain_id)),
-      class_style(thickness_classes, "m"));
+      tags_of("thickness of the source, vertical", fact(domain.provenance, domain_id)), thickness_style());
+  Raster bed = domain.terrain;
+  for (std::size_t i = 0; i < bed.values.size(); ++i)
+    if (!(domain.release_thickness.values[i] > 0)) bed.values[i] = nan;  // outside the source
   files.push_back(folder / "sliding_surface.tif");
-  write_cog(files.back(), bed_of_source(domain),
-            tags_of("surface that the source slides on", fact(domain.provenance, domain_id)));
+  write_cog(files.back(), bed, tags_of("surface that the source slides on", fact(domain.provenance, domain_id)));
   write_qgis_hillshade_style(files.back());
   std::vector<OutlineLayer> layers{
       {"source", {{"source", outline_above(domain.release_thickness, 0), {{"volume_m3", prepared.total.volume}}}}}};
@@ -241,48 +219,32 @@ std::vector<fs::path> write_source(const fs::path& folder, const Prepared& prepa
 std::vector<fs::path> write_survey(const fs::path& folder, const Survey& survey, const Prepared* prepared,
                                    const Facts& marks, std::vector<std::string>& lines) {
   make_folder(folder);
+  const SurveyedSlide* slide = prepared && prepared->slide ? &*prepared->slide : nullptr;
   const std::string id = fact(marks, domain_id);
-  BlockFiles blocks(folder, survey, correlation_length(survey, prepared), id);
+  BlockFiles blocks(folder, survey, correlation_length(survey, slide), id);
   const Budgets budgets = blocks.walk();
   if (const auto wrong = wrong_order(blocks.order(), {survey.before.file.string(), survey.after.file.string()});
       wrong && !prepared)
     warn("swapped-surveys", to_string(*wrong));
   std::vector<fs::path> files;
-  for (const char* name : {"before_aligned.tif", "after_aligned.tif"}) {
-    files.push_back(folder / name);
-    write_qgis_hillshade_style(files.back());
-  }
-  files.push_back(folder / "difference.tif");
-  write_qgis_style(files.back(), difference_style(change_classes, "m"));
-  if (survey.applied) {
-    files.push_back(folder / "difference_unaligned.tif");
-    write_qgis_style(files.back(), difference_style(change_classes, "m"));
-  }
-  if (survey.errors.is_known()) {
-    files.push_back(folder / "difference_sigma.tif");
-    write_qgis_style(files.back(), class_style(sigma_classes, "m"));
-  }
-  if (!survey.stable.empty()) {
-    files.push_back(folder / "stable_ground.tif");
-    write_stable(files.back(), survey, id);
-  }
-  if (prepared && prepared->slide) {
+  const auto add = [&](const char* name) -> const fs::path& { return files.emplace_back(folder / name); };
+  for (const char* name : {"before_aligned.tif", "after_aligned.tif"}) write_qgis_hillshade_style(add(name));
+  write_qgis_style(add("difference.tif"), change_style());
+  if (survey.applied) write_qgis_style(add("difference_unaligned.tif"), change_style());
+  if (survey.errors.is_known()) write_qgis_style(add("difference_sigma.tif"), sigma_style());
+  if (!survey.stable.empty()) write_stable(add("stable_ground.tif"), survey, id);
+  if (slide) {
     for (const auto& file : write_source(folder, *prepared)) files.push_back(file);
-    put(files, folder / "deposit_surveyed.tif", prepared->slide->deposit,
-        tags_of("surveyed rise of the surface in the deposit", id), class_style(thickness_classes, "m"));
+    put(files, folder / "deposit_surveyed.tif", slide->deposit,
+        tags_of("surveyed rise of the surface in the deposit", id), thickness_style());
+    put(files, folder / "slide_difference.tif", slide->change,
+        tags_of("surface after less surface before, in the slide alone", id), change_style());
+    if (!slide->filled.values.empty())
+      write_cog(add("filled.tif"), slide->filled, tags_of("voids filled: 1 before, 2 after, 3 both", id, "1"));
   }
-  if (prepared && prepared->slide)
-    put(files, folder / "slide_difference.tif", prepared->slide->change,
-        tags_of("surface after less surface before, in the slide alone", id), difference_style(change_classes, "m"));
-  if (prepared && prepared->slide && !prepared->slide->filled.values.empty()) {
-    files.push_back(folder / "filled.tif");
-    write_cog(files.back(), prepared->slide->filled,
-              {"voids filled: 1 before, 2 after, 3 both", "1", {{"SOURCE", "Talus " + version()}, {"DOMAIN_ID", id}}});
-  }
-  say_volumes(survey, budgets, prepared, lines);
+  say_volumes(survey, budgets, slide, lines);
   write_project(folder, survey, files);
-  files.push_back(folder / "survey.json");
-  write_text(files.back(), survey_json(survey, budgets, prepared ? prepared->slide : std::nullopt, marks));
+  write_text(add("survey.json"), survey_json(survey, budgets, prepared ? prepared->slide : std::nullopt, marks));
   return files;
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,14 +16,12 @@ namespace talus::preprocess {
 /// later survey was moved: difference_unaligned.tif too), stable_ground.tif, and survey.json with the alignment, the
 /// error and the volumes. With a slide also source_thickness.tif, sliding_surface.tif, deposit_surveyed.tif and
 /// outlines.gpkg. Styles for QGIS beside all of them. Rasters and survey.json carry the id of `marks` (identity.hpp),
-/// survey.json the mark of the recipe too. Returns the files; `lines` gains the volumes as people read them.
-/// Throws DataError (disk full).
+/// survey.json the mark of the recipe too. Returns the files; `lines` gains the volumes in words. Throws DataError.
 std::vector<std::filesystem::path> write_survey(const std::filesystem::path& folder, const Survey& survey,
                                                 const Prepared* prepared, const Facts& marks,
                                                 std::vector<std::string>& lines);
 
-/// Writes the files of a scene whose sliding surface was computed under an outline: source_thickness.tif,
-/// sliding_surface.tif and outlines.gpkg.
+/// Writes source_thickness.tif, sliding_surface.tif and outlines.gpkg: the sliding surface computed under an outline.
 std::vector<std::filesystem::path> write_source(const std::filesystem::path& folder, const Prepared& prepared);
 
 }  // namespace talus::preprocess

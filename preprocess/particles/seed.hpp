@@ -1,16 +1,30 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Material points in the released mass: cell by cell, a column of the release's thickness at a time.
+// Material points in the released mass: cell by cell, a column of the release's thickness at a time; and whether the
+// grid is fine enough for it.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <random>
 #include <vector>
 
 #include "common/domain/domain.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/options/options.hpp"
 #include "preprocess/release/releases.hpp"
 
 namespace talus::preprocess {
+
+/// Uniform in -size..size, the same in every run and on every machine (the standard's distributions are not).
+class Shift {
+ public:
+  explicit Shift(double size) : size_(size) {}
+  double operator()() { return size_ == 0 ? 0.0 : size_ * (2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1); }
+
+ private:
+  double size_;
+  std::mt19937_64 random_{1};
+};
 
 /// How densely to seed; see GridOptions.
 struct Seeding {
@@ -37,5 +51,9 @@ std::size_t count_points(const std::vector<Release>& releases, const Seeding& se
 /// thickest of its eight neighbours, gives its volume to the thicker ones of them: heavy points beside it would squash
 /// such a point, whatever its own stress, until that stress throws it out.
 SeedPoints seed_points(const std::vector<Release>& releases, const Seeding& seeding);
+
+/// Warns, with the numbers to put in, of fewer than eight cells across the release (half of its columns lie at its rim
+/// then), and of fewer than two layers where the recipe gives their height.
+void warn_of_coarseness(const Raster& thickness, double layer_height, std::size_t points, const GridOptions& grid);
 
 }  // namespace talus::preprocess

@@ -9,11 +9,10 @@
 #include <cstdint>
 
 #include "common/error.hpp"
-#include "common/map/polygon.hpp"
-#include "common/map/sum.hpp"
+#include "common/gis/outlines.hpp"
+#include "common/map/statistics.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 struct Place {
@@ -27,7 +26,6 @@ struct Accumulator {
 
   explicit Accumulator(const MapGrid& g) : grid(g), own(g.count()), west(g.count()) {}
 
-  /// A piece within one cell.
   void add_piece(const Place& a, const Place& b) {
     const double u = (a.u + b.u) / 2, v = (a.v + b.v) / 2, rise = b.v - a.v;
     const int column = std::clamp(static_cast<int>(std::floor(u)), 0, grid.columns - 1);
@@ -63,7 +61,7 @@ void add_edge(const Place& a, const Place& b, Accumulator& sum, std::vector<doub
   parts.assign({0.0, 1.0});
   add_crossings(a.u, b.u, parts);
   add_crossings(a.v, b.v, parts);
-  std::sort(parts.begin(), parts.end());
+  std::ranges::sort(parts);
   Place from = a;
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const double t = parts[i];
@@ -78,31 +76,14 @@ void require_inside(const MapGrid& grid, const MapPolygon& polygon, const std::f
   for (const auto& [x, y] : polygon.rings.front()) {
     if (x >= grid.west - slack && x <= grid.east() + slack && y >= grid.south - slack && y <= grid.north() + slack)
       continue;
-    throw DataError(Fault{
-        fmt::format(
-            "{}: polygon {}reaches x {:.1f}, y {:.1f}, outside the working grid (x {:.1f}..{:.1f}, y {:.1f}..{:.1f})",
-            file.string(), polygon.name.empty() ? "" : "\"" + polygon.name + "\" ", x, y, grid.west, grid.east(),
-            grid.south, grid.north()),
-        "it must lie on the DEM", "Check the CRS of both, give a DEM that reaches further, or clip the polygon"});
+    throw DataError(
+        {fmt::format(
+             "{}: polygon {}reaches x {:.1f}, y {:.1f}, outside the working grid (x {:.1f}..{:.1f}, y {:.1f}..{:.1f})",
+             file.string(), polygon.name.empty() ? "" : "\"" + polygon.name + "\" ", x, y, grid.west, grid.east(),
+             grid.south, grid.north()),
+         "it must lie on the DEM", "Check the CRS of both, give a DEM that reaches further, or clip the polygon"});
   }
 }
-
-}  // namespace
-
-double area_of(const MapPolygon& polygon) {
-  Sum twice;
-  const auto origin = polygon.rings.front().front();  // map coordinates are large, areas are not
-  for (const auto& ring : polygon.rings) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const auto& a = ring[i];
-      const auto& b = ring[(i + 1) % ring.size()];
-      twice.add((a[0] - origin[0]) * (b[1] - origin[1]) - (b[0] - origin[0]) * (a[1] - origin[1]));
-    }
-  }
-  return twice.value() / 2;
-}
-
-namespace {
 
 /// A ring from the grid's corner, in cells.
 using PlacedRing = std::vector<Place>;
@@ -135,9 +116,8 @@ PlacedRing clipped(const PlacedRing& ring, double Place::*axis, double bound, do
 std::vector<double> covered_by(const MapGrid& grid, const std::vector<PlacedRing>& rings) {
   Accumulator sum(grid);
   std::vector<double> parts;
-  for (const PlacedRing& ring : rings) {
+  for (const PlacedRing& ring : rings)
     for (std::size_t i = 0; i < ring.size(); ++i) add_edge(ring[i], ring[(i + 1) % ring.size()], sum, parts);
-  }
   std::vector<double> covered = sum.covered();
   for (double& part : covered) {  // rounding of sums of whole cells
     if (std::abs(part) < 1e-13) part = 0;
@@ -147,6 +127,52 @@ std::vector<double> covered_by(const MapGrid& grid, const std::vector<PlacedRing
 }
 
 }  // namespace
+
+void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::path& file) {
+  if (polygons.empty())
+    throw DataError({file.string() + ": holds no polygon", "an outline is needed", "Check the file with ogrinfo -al"});
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    const std::string& name = polygons[i].name;
+    if (const std::string why = invalidity_of(polygons[i]); !why.empty())
+      throw DataError(
+          {fmt::format("{}: polygon {}{} is not valid", file.string(), i + 1, name.empty() ? "" : " \"" + name + "\""),
+           why, "Mend it in a GIS, or: ogr2ogr -makevalid out.gpkg " + file.string()});
+    for (std::size_t r = 0; r < polygons[i].rings.size(); ++r) {
+      auto& ring = polygons[i].rings[r];
+      if ((area_of({{ring}, {}, {}}) > 0) != (r == 0)) std::reverse(ring.begin(), ring.end());
+    }
+  }
+}
+
+std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                            const std::string& usual) {
+  std::vector<MapPolygon> polygons = read_polygons(source, crs_wkt, usual);
+  check_polygons(polygons, vector_source(source).file);
+  return polygons;
+}
+
+std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                            double grow, const std::string& usual) {
+  std::vector<MapPolygon> polygons = read_valid_polygons(source, crs_wkt, usual);
+  if (grow == 0) return polygons;
+  const std::filesystem::path file = vector_source(source).file;
+  polygons = grown(polygons, grow, file);
+  check_polygons(polygons, file);
+  return polygons;
+}
+
+double area_of(const MapPolygon& polygon) {
+  Sum twice;
+  const auto origin = polygon.rings.front().front();  // map coordinates are large, areas are not
+  for (const auto& ring : polygon.rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const auto& a = ring[i];
+      const auto& b = ring[(i + 1) % ring.size()];
+      twice.add((a[0] - origin[0]) * (b[1] - origin[1]) - (b[0] - origin[0]) * (a[1] - origin[1]));
+    }
+  }
+  return twice.value() / 2;
+}
 
 std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file) {
   require_inside(grid, polygon, file);

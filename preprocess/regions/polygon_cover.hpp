@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "common/gis/polygons.hpp"
+#include "common/gis/features.hpp"
 #include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
 
 namespace talus::preprocess {
 
-/// Refuse (DataError, with the place) polygons that are not valid (invalidity_of() in common/gis/grow.hpp), and turn
-/// the rings (outer counter-clockwise, holes clockwise).
+/// Refuse (DataError, with the place) polygons that are not valid (invalidity_of() in common/gis/outlines.hpp), and
+/// turn the rings (outer counter-clockwise, holes clockwise).
 void check_polygons(std::vector<MapPolygon>& polygons, const std::filesystem::path& file);
 
 /// read_polygons() that pass check_polygons().
 std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
                                             const std::string& usual = {});
 
-/// Those, grown by a distance [m] (common/gis/grow.hpp); 0 leaves them as they are.
+/// Those, grown by a distance [m] (common/gis/outlines.hpp); 0 leaves them as they are.
 std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
                                             double grow, const std::string& usual = {});
 
@@ -33,8 +33,7 @@ double area_of(const MapPolygon& polygon);
 /// DataError (naming `file`) when the polygon reaches beyond the grid.
 std::vector<double> coverage(const MapGrid& grid, const MapPolygon& polygon, const std::filesystem::path& file);
 
-/// Covered part of every cell, as coverage() gives it, of a polygon that may reach beyond the grid: only what lies on
-/// it counts.
+/// coverage() of a polygon that may reach beyond the grid: only what lies on it counts.
 std::vector<double> coverage_within(const MapGrid& grid, const MapPolygon& polygon);
 
 }  // namespace talus::preprocess

@@ -8,12 +8,10 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/map/polygon.hpp"
-#include "common/map/sum.hpp"
+#include "common/map/statistics.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 /// A stretch of a row (or column) of centres that lies within a polygon; centres are at whole numbers.
@@ -35,9 +33,8 @@ std::vector<std::vector<double>> crossings(const MapGrid& grid, const MapPolygon
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const auto a = place(ring[i]), b = place(ring[(i + 1) % ring.size()]);
       const double low = std::min(a[1], b[1]), high = std::max(a[1], b[1]);
-      for (int line = std::max(0, static_cast<int>(std::ceil(low))); line < lines && line < high; ++line) {
+      for (int line = std::max(0, static_cast<int>(std::ceil(low))); line < lines && line < high; ++line)
         found[static_cast<std::size_t>(line)].push_back(a[0] + (b[0] - a[0]) * (line - a[1]) / (b[1] - a[1]));
-      }
     }
   }
   return found;
@@ -48,20 +45,11 @@ std::vector<Span> spans(const MapGrid& grid, const MapPolygon& polygon, bool upr
   auto lines = crossings(grid, polygon, upright);
   for (std::size_t line = 0; line < lines.size(); ++line) {
     std::vector<double>& places = lines[line];
-    std::sort(places.begin(), places.end());
+    std::ranges::sort(places);
     for (std::size_t i = 0; i + 1 < places.size(); i += 2)
       all.push_back({static_cast<int>(line), places[i], places[i + 1]});
   }
   return all;
-}
-
-void mark_inside(Outline& outline, const std::vector<Span>& rows) {
-  for (const Span& span : rows) {
-    const int last = std::min(outline.grid.columns - 1, static_cast<int>(std::ceil(span.to)) - 1);
-    for (int column = std::max(0, static_cast<int>(std::ceil(span.from))); column <= last; ++column) {
-      outline.number[outline.grid.index(column, span.line)] = 0;
-    }
-  }
 }
 
 /// The two ends of each span set how far its first and last centre are from the outline.
@@ -89,9 +77,9 @@ void number_cells(Outline& outline, const std::filesystem::path& file) {
     outline.cells.push_back(c);
   }
   if (!outline.cells.empty()) return;
-  throw DataError(Fault{fmt::format("{}: {:.3g} m2 without the centre of a cell", file.string(), outline.area),
-                        fmt::format("cells of {:g} m are too coarse for this outline", outline.grid.cell),
-                        "Lower spacing_m in [preprocess.grid], or draw the outline wider"});
+  throw DataError({fmt::format("{}: {:.3g} m2 without the centre of a cell", file.string(), outline.area),
+                   fmt::format("cells of {:g} m are too coarse for this outline", outline.grid.cell),
+                   "Lower spacing_m in [preprocess.grid], or draw the outline wider"});
 }
 
 }  // namespace
@@ -108,7 +96,11 @@ Outline outline_of(const MapGrid& grid, const std::vector<MapPolygon>& polygons,
   Sum area;
   for (double part : outline.part) area.add(part);
   outline.area = area.value() * grid.cell * grid.cell;
-  mark_inside(outline, rows);
+  for (const Span& span : rows) {
+    const int last = std::min(grid.columns - 1, static_cast<int>(std::ceil(span.to)) - 1);
+    for (int column = std::max(0, static_cast<int>(std::ceil(span.from))); column <= last; ++column)
+      outline.number[grid.index(column, span.line)] = 0;
+  }
   number_cells(outline, file);
   constexpr double unknown = -1;
   outline.reach.assign(outline.cells.size(), {unknown, unknown, unknown, unknown});

@@ -2,23 +2,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/release/releases.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "common/error.hpp"
-#include "common/gis/read_raster.hpp"
+#include "common/gis/raster_file.hpp"
 #include "common/map/polygon.hpp"
-#include "common/map/slope.hpp"
+#include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/elevation.hpp"
-#include "preprocess/terrain/surfaces.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
+
+Volumes volumes_of(const Raster& thickness, const std::vector<double>& cosine) {
+  const double cell_area = thickness.grid.cell * thickness.grid.cell;
+  Volumes v;
+  Sum volume, if_normal, true_area;
+  for (std::size_t i = 0; i < thickness.values.size(); ++i) {
+    const double t = thickness.values[i];
+    if (!(t > 0)) continue;
+    ++v.cells;
+    volume.add(t);
+    if_normal.add(t / cosine[i]);
+    true_area.add(1 / cosine[i]);
+    v.max_vertical = std::max(v.max_vertical, t);
+    v.max_normal = std::max(v.max_normal, t * cosine[i]);
+  }
+  v.volume = volume.value() * cell_area;
+  v.volume_if_normal = if_normal.value() * cell_area;
+  v.projected_area = static_cast<double>(v.cells) * cell_area;
+  v.true_area = true_area.value() * cell_area;
+  return v;
+}
+
+std::vector<std::string> as_lines(const std::string& name, const Volumes& v) {
+  return {fmt::format("{}: {} m3: vertical thickness times map area", name, grouped(v.volume)),
+          fmt::format("  the same thickness taken as slope-normal would be {} m3 ({:+.1f} %)",
+                      grouped(v.volume_if_normal), 100 * (v.volume_if_normal / v.volume - 1)),
+          fmt::format("  area {} m2 on the map, {} m2 along the bed, {} cells", grouped(v.projected_area),
+                      grouped(v.true_area), v.cells),
+          fmt::format("  thickness at most {:.2f} m vertical, {:.2f} m slope-normal", v.max_vertical, v.max_normal)};
+}
+
+std::vector<std::pair<std::string, std::string>> as_facts(const Volumes& v) {
+  const auto number = [](double value) { return fmt::format("{:.12g}", value); };
+  return {{"released_volume_m3", number(v.volume)},
+          {"volume_if_thickness_were_slope_normal_m3", number(v.volume_if_normal)},
+          {"released_area_projected_m2", number(v.projected_area)},
+          {"released_area_true_m2", number(v.true_area)},
+          {"released_cells", std::to_string(v.cells)},
+          {"max_thickness_vertical_m", number(v.max_vertical)},
+          {"max_thickness_slope_normal_m", number(v.max_normal)}};
+}
 
 namespace {
 
@@ -30,8 +71,8 @@ void refuse_negative(const Raster& thickness, const std::filesystem::path& file)
     worst = std::min(worst, negative[i] ? thickness.values[i] : 0.0);
   }
   refuse_cells(
-      thickness.grid, negative,
-      {file, fmt::format("cells of negative thickness (down to {:g} m)", worst), "a release has none",
+      thickness.grid, negative, file,
+      {fmt::format("cells of negative thickness (down to {:g} m)", worst), "a release has none",
        fmt::format("Is it an elevation difference, after - before? Then: gdal_calc.py -A {} --calc \"maximum(-A,0)\" "
                    "--outfile out.tif",
                    file.string())});
@@ -54,15 +95,14 @@ double thickness_of(const MapPolygon& polygon, std::size_t number, const Release
     } else if (value >= 0 && std::isfinite(value)) {
       return value;
     } else {
-      throw DataError(Fault{fmt::format("{}: {} = {:g}", place, name, value),
-                            "a thickness is a number and not negative",
-                            "Mend the attribute, or give thickness_m in the recipe"});
+      throw DataError({fmt::format("{}: {} = {:g}", place, name, value), "a thickness is a number and not negative",
+                       "Mend the attribute, or give thickness_m in the recipe"});
     }
   }
-  throw DataError(Fault{fmt::format("{}: no number \"{}\" among its attributes ({})", place, options.attribute,
-                                    others.empty() ? "it has none" : others),
-                        "its thickness is not known",
-                        "Name the attribute in the recipe (attribute = ...), or give thickness_m"});
+  throw DataError({fmt::format("{}: no number \"{}\" among its attributes ({})", place, options.attribute,
+                               others.empty() ? "it has none" : others),
+                   "its thickness is not known",
+                   "Name the attribute in the recipe (attribute = ...), or give thickness_m"});
 }
 
 Raster from_polygons(const ReleaseOptions& options, const MapGrid& grid) {
@@ -84,17 +124,11 @@ Raster from_polygons(const ReleaseOptions& options, const MapGrid& grid) {
   return thickness;
 }
 
-void refuse_nothing(const Raster& thickness, const std::filesystem::path& file) {
-  if (std::any_of(thickness.values.begin(), thickness.values.end(), [](double t) { return t > 0; })) return;
-  throw DataError(Fault{file.string() + ": its thickness is 0 everywhere", "the source is empty",
-                        "Check the values with gdalinfo -stats or ogrinfo -al"});
-}
-
 void refuse_release_on_nodata(const Raster& thickness, const Raster& bed, const std::filesystem::path& file) {
   std::vector<char> bad(bed.values.size());
   for (std::size_t i = 0; i < bad.size(); ++i) bad[i] = thickness.values[i] > 0 && std::isnan(bed.values[i]);
-  refuse_cells(bed.grid, bad,
-               {file, "cells of release where the DEM has no elevation", "nothing holds it up there",
+  refuse_cells(bed.grid, bad, file,
+               {"cells of release where the DEM has no elevation", "nothing holds it up there",
                 "Fill the DEM, or cut the release"});
 }
 
@@ -104,7 +138,9 @@ Release read_release(const ReleaseOptions& options, std::size_t item, const Rast
   const auto& file = options.polygons.empty() ? options.thickness_raster : options.polygons;
   Release release{options.name.empty() ? fmt::format("release-{}", item + 1) : options.name,
                   options.polygons.empty() ? from_raster(options, bed.grid) : from_polygons(options, bed.grid)};
-  refuse_nothing(release.thickness, file);
+  if (std::ranges::none_of(release.thickness.values, [](double t) { return t > 0; }))
+    throw DataError({file.string() + ": its thickness is 0 everywhere", "the source is empty",
+                     "Check the values with gdalinfo -stats or ogrinfo -al"});
   refuse_release_on_nodata(release.thickness, bed, file);
   if (options.direction == Direction::slope_normal) {
     const std::vector<double> cosine = slope_cosine(bed);

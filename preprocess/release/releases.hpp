@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Releases onto a base DEM: rasters of thickness, or polygons with a thickness.
+// Releases onto a base DEM (rasters of thickness, or polygons with a thickness), and their volumes.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/map/raster.hpp"
@@ -11,7 +12,26 @@
 
 namespace talus::preprocess {
 
-/// One release on the working grid.
+/// Volumes of a release of vertical thickness t on a bed of slope s, with cells of map area A.
+struct Volumes {
+  double volume = 0;            // sum of t A [m3]
+  double volume_if_normal = 0;  // sum of t A / cos s: what the same numbers would release if taken as slope-normal [m3]
+  double projected_area = 0;    // sum of A where t > 0 [m2]
+  double true_area = 0;         // sum of A / cos s where t > 0 [m2]
+  double max_vertical = 0;      // [m]
+  double max_normal = 0;        // t cos s [m]
+  std::size_t cells = 0;
+};
+
+/// `cosine` as slope_cosine() gives it for the bed.
+Volumes volumes_of(const Raster& thickness, const std::vector<double>& cosine);
+
+/// Volumes as lines that people read.
+std::vector<std::string> as_lines(const std::string& name, const Volumes& volumes);
+
+/// Volumes as facts to keep with the results ("released_volume_m3", ...).
+std::vector<std::pair<std::string, std::string>> as_facts(const Volumes& volumes);
+
 struct Release {
   std::string name;
   Raster thickness;  // vertical [m], 0 where nothing is released

@@ -31,8 +31,7 @@ struct DepthPoint {
 /// laplace(z) = q with z = ground on the outline and z <= ground within, q such that the largest depth (or the volume)
 /// is the one given: the surface of least bending in the sense of Jaboyedoff et al. 2004 (sloping local base level) and
 /// Kuo et al. 2020 (least area under a given volume), (T21) and (T22) in docs/explanation/theory.md. `depth` and
-/// `volume` > 0; they are met to rounding. The ground must have elevations in all cells of the outline. Throws
-/// NumericalError.
+/// `volume` > 0; they are met to rounding. All cells of the outline need elevations. Throws NumericalError.
 SlidingSurface surface_of_depth(const Raster& before, const Outline& outline, double depth);
 /// The sliding surface with that volume between it and the ground [m3].
 SlidingSurface surface_of_volume(const Raster& before, const Outline& outline, double volume);

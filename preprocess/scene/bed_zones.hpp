@@ -21,9 +21,6 @@ namespace talus::preprocess {
 void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
                    std::vector<std::pair<std::string, Raster>>& bed);
 
-/// The raster of a number of the bed, made without values where there is none yet.
-Raster& raster_named(std::vector<std::pair<std::string, Raster>>& bed, std::string_view name, const MapGrid& grid);
-
 /// The number of the bed (common/domain/bed_numbers.hpp) that an attribute gives: the one of its name, or of the first
 /// ten letters that a shapefile leaves of it; empty where there is none.
 std::string_view bed_number_of(std::string_view attribute);

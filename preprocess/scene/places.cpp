@@ -13,7 +13,7 @@
 
 #include "common/error.hpp"
 #include "common/gis/crs.hpp"
-#include "common/gis/place_layer.hpp"
+#include "common/gis/features.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
@@ -27,15 +27,7 @@ bool same_field(const std::string& a, const std::string& b) {
 }
 
 bool has_attribute(const PlaceLayer& layer, const std::string& name) {
-  return std::any_of(layer.fields.begin(), layer.fields.end(),
-                     [&](const std::string& field) { return same_field(field, name); });
-}
-
-void require_attribute(const PlaceOptions& o, const PlaceLayer& layer) {
-  if (o.attribute == usual_name_attribute || has_attribute(layer, o.attribute)) return;
-  throw DataError({fmt::format("{}: layer \"{}\" has no attribute \"{}\"", o.file.string(), layer.name, o.attribute),
-                   layer.fields.empty() ? "it has none" : fmt::format("it has {}", fmt::join(layer.fields, ", ")),
-                   "Name the attribute that names its lines or points, or leave the key out"});
+  return std::ranges::any_of(layer.fields, [&](const std::string& field) { return same_field(field, name); });
 }
 
 /// What the file calls a feature; empty where it has no name.
@@ -66,7 +58,7 @@ std::string name_of(const PlaceOptions& o, const PlaceFeature& feature, bool nam
   return name;
 }
 
-/// This function adds the fault of a feature that leaves the ground.
+/// Adds the fault of a feature that leaves the ground.
 void check_ground(const PlaceFeature& feature, const std::string& name, const Raster& ground,
                   std::vector<Fault>& faults) {
   const MapGrid& map = ground.grid;
@@ -80,7 +72,7 @@ void check_ground(const PlaceFeature& feature, const std::string& name, const Ra
     return !std::isnan(ground.at(column, row) + ground.at(column + 1, row) + ground.at(column, row + 1) +
                        ground.at(column + 1, row + 1));
   };
-  const auto beyond = std::find_if_not(feature.points.begin(), feature.points.end(), inside);
+  const auto beyond = std::ranges::find_if_not(feature.points, inside);
   if (beyond == feature.points.end()) return;
   faults.push_back(
       {fmt::format("{} (\"{}\"): ({:.2f}, {:.2f}) lies outside the domain", feature.place, name, (*beyond)[0],
@@ -91,7 +83,7 @@ void check_ground(const PlaceFeature& feature, const std::string& name, const Ra
                    map.x(0), east, map.y(0), north, feature.points.size() > 1 ? "" : ", on known ground")});
 }
 
-/// This function says what became of a file's CRS.
+/// Says what became of a file's CRS.
 void say_crs(const PlaceOptions& o, const PlaceLayer& layer, const std::string& crs_wkt) {
   if (same_crs(layer.crs_wkt, crs_wkt)) return;
   if (layer.crs_wkt.empty())
@@ -105,7 +97,7 @@ void say_crs(const PlaceOptions& o, const PlaceLayer& layer, const std::string& 
 
 void say_what(const PlaceOptions& o, const PlaceLayer& layer, const std::vector<DomainPlace>& places) {
   constexpr std::size_t most_named = 8;
-  const auto lines = std::count_if(places.begin(), places.end(), [](const DomainPlace& one) { return one.is_line(); });
+  const auto lines = std::ranges::count_if(places, [](const DomainPlace& one) { return one.is_line(); });
   const auto points = static_cast<std::ptrdiff_t>(places.size()) - lines;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::min(most_named, places.size()); ++i) names.push_back(places[i].name);
@@ -119,9 +111,12 @@ void say_what(const PlaceOptions& o, const PlaceLayer& layer, const std::vector<
 
 std::vector<DomainPlace> read_place(const PlaceOptions& o, const Raster& ground) {
   PlaceLayer layer = read_place_layer(o.file, ground.grid.crs_wkt);
-  require_attribute(o, layer);
-  say_crs(o, layer, ground.grid.crs_wkt);
   const bool named = has_attribute(layer, o.attribute);
+  if (o.attribute != usual_name_attribute && !named)
+    throw DataError({fmt::format("{}: layer \"{}\" has no attribute \"{}\"", o.file.string(), layer.name, o.attribute),
+                     layer.fields.empty() ? "it has none" : fmt::format("it has {}", fmt::join(layer.fields, ", ")),
+                     "Name the attribute that names its lines or points, or leave the key out"});
+  say_crs(o, layer, ground.grid.crs_wkt);
   std::vector<DomainPlace> places;
   std::vector<Fault> faults;
   std::map<std::string, std::string> taken;

@@ -6,29 +6,24 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
 
 #include "common/error.hpp"
-#include "common/map/slope.hpp"
-#include "common/map/sum.hpp"
-#include "common/recipe/vector_source.hpp"
+#include "common/map/raster.hpp"
+#include "common/map/statistics.hpp"
+#include "common/recipe/paths.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory/laboratory.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
-#include "preprocess/particles/coarseness.hpp"
 #include "preprocess/particles/seed.hpp"
-#include "preprocess/release/releases.hpp"
 #include "preprocess/scene/bed_zones.hpp"
 #include "preprocess/scene/places.hpp"
 #include "preprocess/terrain/elevation.hpp"
-#include "preprocess/terrain/surfaces.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 /// What went down where nothing fails: the layer that the slide took along.
@@ -41,8 +36,8 @@ Release lowered_outside_source(const SceneRasters& scene, const std::string& nam
     any = true;
   }
   if (!any)
-    throw DataError(Fault{"[[preprocess.erodible]] lowering = true: nothing lies lower outside the source",
-                          "no ground was eroded", "Leave it out, or raise source.threshold_m"});
+    throw DataError({"[[preprocess.erodible]] lowering = true: nothing lies lower outside the source",
+                     "no ground was eroded", "Leave it out, or raise source.threshold_m"});
   return layer;
 }
 
@@ -75,14 +70,12 @@ void lay_erodible(const Options& options, SceneRasters& scene) {
     if (o.name.empty()) o.name = fmt::format("erodible-{}", e + 1);
     layers.push_back(o.lowering ? lowered_outside_source(scene, o.name) : read_release(o, e, scene.bed));
   }
-  for (const Release& layer : layers) {
+  for (const Release& layer : layers)
     for (std::size_t c = 0; c < scene.bed.values.size(); ++c) scene.bed.values[c] -= layer.thickness.values[c];
-  }
   scene.releases.insert(scene.releases.begin(), std::make_move_iterator(layers.begin()),
                         std::make_move_iterator(layers.end()));
 }
 
-/// Rasters of the bed on the working grid.
 std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, const MapGrid& grid) {
   const bool reproject = !options.working_crs.empty();
   std::vector<std::pair<std::string, Raster>> rasters;
@@ -97,9 +90,9 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
     require_data(raster, file);
     std::vector<char> negative(raster.values.size());
     for (std::size_t i = 0; i < negative.size(); ++i) negative[i] = raster.values[i] < 0;  // false for nodata
-    refuse_cells(grid, negative,
-                 {file, "negative values of " + name, "it has none",
-                  "Mend the raster; no data means the number in [solve.base]"});
+    refuse_cells(
+        grid, negative, file,
+        {"negative values of " + name, "it has none", "Mend the raster; no data means the number in [solve.base]"});
     rasters.emplace_back(name, std::move(raster));
   }
   return rasters;
@@ -108,9 +101,8 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
 /// Of what is released: the releases from the `first` one on.
 Raster total_thickness(const SceneRasters& scene, std::size_t first) {
   Raster total{scene.bed.grid, std::vector<double>(scene.bed.grid.count(), 0.0)};
-  for (std::size_t r = first; r < scene.releases.size(); ++r) {
+  for (std::size_t r = first; r < scene.releases.size(); ++r)
     for (std::size_t i = 0; i < total.values.size(); ++i) total.values[i] += scene.releases[r].thickness.values[i];
-  }
   return total;
 }
 
@@ -142,13 +134,6 @@ void add_volumes(const SceneRasters& scene, Prepared& prepared) {
   }
 }
 
-/// The bodies that stand on the ground, and how finely they are written.
-void add_obstacles(const Options& options, const Raster& bed, Prepared& prepared) {
-  const Domain& domain = prepared.domain;
-  prepared.obstacles = upright_obstacles(options.obstacle, bed, 2 * domain.layer_height);
-  prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
-}
-
 /// Refuses more points than can be numbered or held, and warns of so many that they take long.
 void judge_count(std::size_t points, const GridOptions& grid) {
   constexpr double bytes_per_seed = 64;  // places, volume, extents, release
@@ -161,7 +146,7 @@ void judge_count(std::size_t points, const GridOptions& grid) {
              : std::string());
   const std::string what = fmt::format("[preprocess.grid]: {} material points", grouped(count));
   if (points > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw RecipeError(Fault{what, "points are numbered in 32 bits", mend});
+    throw RecipeError({what, "points are numbered in 32 bits", mend});
   require_memory(bytes_per_seed * count, what, mend);
   if (count > many)
     warn("many-points",
@@ -174,12 +159,14 @@ void judge_count(std::size_t points, const GridOptions& grid) {
 
 }  // namespace
 
+void add_input(std::vector<std::filesystem::path>& inputs, const std::filesystem::path& source) {
+  const std::filesystem::path file = vector_source(source).file;
+  if (!file.empty() && std::find(inputs.begin(), inputs.end(), file) == inputs.end()) inputs.push_back(file);
+}
+
 std::vector<std::filesystem::path> inputs_of(const Options& options) {
   std::vector<std::filesystem::path> inputs;
-  const auto add = [&](const std::filesystem::path& source) {
-    const std::filesystem::path file = vector_source(source).file;  // often with several layers
-    if (!file.empty() && std::find(inputs.begin(), inputs.end(), file) == inputs.end()) inputs.push_back(file);
-  };
+  const auto add = [&](const std::filesystem::path& source) { add_input(inputs, source); };
   for (const auto& file :
        {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon,
         options.source.sliding_surface.depth_points, options.coregistration.changed, options.deposit.polygon})
@@ -225,14 +212,14 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   warn_at_edge(domain.release_thickness);
   add_volumes(scene, prepared);
   stop_if_interrupted("preparing the domain");
-  if (points == Points::seeded) {
+  if (points == Points::seeded)
     domain.points = laboratory ? points_of_boxes(options) : seed_points(scene.releases, seeding);
-  }
   domain.erodible = static_cast<int>(options.erodible.size());
   domain.bed = read_bed(options, domain.grid);
   if (!options.bed.polygons.empty()) lay_bed_polygons(options.bed.polygons, scene.bed, domain.bed);
   lay_bed_zones(options.bed.zones, scene.bed, domain.bed);
-  add_obstacles(options, scene.bed, prepared);
+  prepared.obstacles = upright_obstacles(options.obstacle, scene.bed, 2 * domain.layer_height);
+  prepared.obstacle_voxel = obstacle_voxel(domain.grid.cell, domain.layer_height);
   domain.places = read_places(options.place, scene.bed);
   domain.terrain = std::move(scene.bed);
   domain.before = std::move(scene.before);

@@ -12,7 +12,7 @@
 #include "common/domain/domain.hpp"
 #include "common/domain/level_set.hpp"
 #include "preprocess/options/options.hpp"
-#include "preprocess/release/volumes.hpp"
+#include "preprocess/release/releases.hpp"
 #include "preprocess/scene/read_scene.hpp"
 
 namespace talus::preprocess {
@@ -33,6 +33,9 @@ struct Prepared {
   std::optional<Survey> survey = {};                   // where before and after are given
   std::optional<SurveyedSlide> slide = {};
 };
+
+/// Adds the file of `source`, which often holds several layers, once; empty: none.
+void add_input(std::vector<std::filesystem::path>& inputs, const std::filesystem::path& source);
 
 /// The files that the options name.
 std::vector<std::filesystem::path> inputs_of(const Options& options);

@@ -7,20 +7,16 @@
 #include <algorithm>
 
 #include "common/error.hpp"
-#include "common/map/crop.hpp"
-#include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory/laboratory.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
-#include "preprocess/release/outline_source.hpp"
 #include "preprocess/release/source.hpp"
-#include "preprocess/survey/order.hpp"
+#include "preprocess/survey/change.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/plausible_ground.hpp"
-#include "preprocess/terrain/surfaces.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 constexpr int enough = 512;  // cells in the middle of a map, each way: they tell how steep it is
@@ -60,7 +56,7 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
     survey.source = read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
   Source source = find_source(
       {surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(slide.sigma)}, options.source);
-  const Change change = change_between({surfaces[0], surfaces[1]}, options.deposit, slide);
+  const Change change = change_between(surfaces[0], surfaces[1], options.deposit, slide);
   judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
               {options.before_dem.string(), options.after_dem.string(), survey.applied});
   settle_findings();
@@ -105,15 +101,13 @@ void warn_of_overlap(const std::vector<Release>& releases) {
   for (std::size_t a = 0; a < releases.size(); ++a) {
     for (std::size_t b = a + 1; b < releases.size(); ++b) {
       std::size_t shared = 0;
-      for (std::size_t i = 0; i < releases[a].thickness.values.size(); ++i) {
+      for (std::size_t i = 0; i < releases[a].thickness.values.size(); ++i)
         shared += releases[a].thickness.values[i] > 0 && releases[b].thickness.values[i] > 0;
-      }
-      if (shared > 0) {
+      if (shared > 0)
         warn("releases-overlap",
              fmt::format("releases {} and {} share {} cells; there the second lies on the first", releases[a].name,
                          releases[b].name, shared),
              {{"cells", static_cast<double>(shared), "1"}});
-      }
     }
   }
 }
@@ -203,7 +197,7 @@ SceneRasters read_scene(const Options& given, SurveyMemory* memory) {
     scene = read_by_way(resolved(given), memory);
     if (scene.survey || given.way() == Way::laboratory) return;  // surveys were looked at when they were compared
     judge_lengths(scene.bed.grid, given.working_crs);
-    judge_heights(scene.before, {given.first_dem(), given.vertical_unit});
+    judge_heights(scene.before, given.first_dem(), given.vertical_unit);
   });
   warn_of_unused("preprocess", given.accept, found.list());
   scene.findings = found.list();
@@ -222,7 +216,7 @@ Survey survey_of(const Options& given) {
   const int columns = std::min(enough, grid.columns), rows = std::min(enough, grid.rows);
   judge_heights(
       onto_grid(survey.before, cut(grid, {(grid.columns - columns) / 2, (grid.rows - rows) / 2, columns, rows})),
-      {options.before_dem, options.vertical_unit});
+      options.before_dem, options.vertical_unit);
   return survey;
 }
 

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/map/raster.hpp"
@@ -30,12 +29,10 @@ struct SceneRasters {
   std::vector<Finding> findings = {};
 };
 
-/// The options with working_crs = "utm" replaced by the zone that holds the centre of the first DEM. Throws RecipeError
-/// where they lack what they need.
+/// The options with working_crs = "utm" replaced by the zone of the centre of the first DEM. Throws RecipeError.
 Options resolved(Options options);
 
-/// What two elevation models say of what changed, and nothing further: the first part of read_scene(), for before_dem
-/// and after_dem alone.
+/// What before_dem and after_dem say of what changed, and nothing further: the first part of read_scene().
 Survey survey_of(const Options& options);
 
 /// Two surveys compared and aligned, before anything is said to fail.

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "common/error.hpp"
-#include "common/recipe/values.hpp"
+#include "common/recipe/recipe.hpp"
 #include "preprocess/slides/slides.hpp"
 
 namespace talus::preprocess {

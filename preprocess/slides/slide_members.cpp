@@ -1,18 +1,22 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slides as members: the recipe of each, and the table of all.
+// Slides as members: the recipe of each, the table of all, and their domains.
+#include <algorithm>
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <optional>
-
 #include "common/error.hpp"
-#include "common/map/crop.hpp"
-#include "common/recipe/values.hpp"
+#include "common/gis/crs.hpp"
+#include "common/gis/raster_file.hpp"
+#include "common/map/raster.hpp"
+#include "common/map/statistics.hpp"
+#include "common/recipe/recipe.hpp"
+#include "common/table_words.hpp"
+#include "preprocess/ensemble/csv.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
+#include "preprocess/scene/prepare.hpp"
 #include "preprocess/slides/slides.hpp"
+#include "preprocess/terrain/elevation.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -35,13 +39,6 @@ std::string source_of(const std::filesystem::path& source) {
   return "preprocess.source.polygon=" + recipe::toml_text(source.string());
 }
 
-std::optional<double> number_in(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 /// What a slide's recipe has beyond the one that all share, of [preprocess], but for what its attributes set.
 std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapGrid& window) {
   std::vector<std::string> values;
@@ -58,38 +55,22 @@ std::vector<std::string> values_of(const Slide& slide, ModelIs model, const MapG
   return values;
 }
 
-/// A column of a key of the recipe: numbers where all are, else words.
-MemberColumn column_of(const std::vector<Slide>& slides, std::size_t place) {
-  MemberColumn column{slides.front().set[place].first, {}, {}};
+MemberColumn column_at(const std::vector<Slide>& slides, std::size_t place) {
+  const std::string& key = slides.front().set[place].first;
   std::vector<std::string> texts;
-  for (const Slide& slide : slides) {
-    const auto found =
-        std::find_if(slide.set.begin(), slide.set.end(), [&](const auto& one) { return one.first == column.key; });
-    texts.push_back(found->second);
-  }
-  const bool numbers =
-      std::all_of(texts.begin(), texts.end(), [](const std::string& text) { return number_in(text).has_value(); });
-  for (const std::string& text : texts) {
-    if (numbers) {
-      column.values.push_back(*number_in(text));
-      continue;
-    }
-    const auto known = std::find(column.words.begin(), column.words.end(), text);
-    column.values.push_back(static_cast<double>(known - column.words.begin()));
-    if (known == column.words.end()) column.words.push_back(text);
-  }
-  return column;
+  for (const Slide& slide : slides)
+    texts.push_back(std::ranges::find_if(slide.set, [&](const auto& one) { return one.first == key; })->second);
+  return column_of(key, texts, finite_number);
 }
 
 void refuse_own_keys(const MemberTable& table) {
   for (const MemberColumn& column : table.columns)
     for (const char* own : of_slides)
-      if (!is_amount(column.key) && (column.key == own || column.key.starts_with(std::string(own) + ".") ||
-                                     column.key.starts_with(std::string(own) + "[")))
-        throw RecipeError(Fault{
-            "[slides]: " + column.key + " cannot be set by an attribute",
-            "what is released, and on which ground, [slides] says itself",
-            fmt::format("Set {}, {}, {} or {}, or leave it out", thickness_key, volume_key, cut_keys[0], cut_keys[1])});
+      if (!is_amount(column.key) && is_below(column.key, own))
+        throw RecipeError({"[slides]: " + column.key + " cannot be set by an attribute",
+                           "what is released, and on which ground, [slides] says itself",
+                           fmt::format("Set {}, {}, {} or {}, or leave it out", thickness_key, volume_key, cut_keys[0],
+                                       cut_keys[1])});
 }
 
 /// The faults of a slide's recipe, with the slide in the place of the command line's --set.
@@ -103,19 +84,43 @@ Options options_of(const recipe::Recipe& recipe, const Slide& slide, const std::
   }
 }
 
+namespace fs = std::filesystem;
+
+void say_plan(const EnsemblePlan& plan, const SlideOptions& options) {
+  const SlideTable& slides = *plan.table.slides;
+  const MapGrid& grid = slides.lattice;
+  Sum cells;
+  double largest = 0;
+  for (const CellWindow& w : slides.windows) {
+    cells.add(static_cast<double>(w.columns) * w.rows);
+    largest = std::max(largest, static_cast<double>(w.columns) * w.rows);
+  }
+  log_info(fmt::format("slides: {} over {} x {} cells of {:g} m, {}", plan.table.count, grid.columns, grid.rows,
+                       grid.cell, crs_name(grid.crs_wkt)));
+  log_info(fmt::format("  their domains: {} cells in the mean, {} at most ({})",
+                       grouped(cells.value() / static_cast<double>(slides.windows.size())), grouped(largest),
+                       options.margin ? fmt::format("the outlines and {:g} m around", *options.margin)
+                                      : fmt::format("below a line at {:g} degrees", options.reach_angle)));
+  for (const MemberColumn& column : plan.table.columns) {
+    const auto [low, high] = std::minmax_element(column.values.begin(), column.values.end());
+    log_info(column.words.empty() ? fmt::format("  {}: {:.6g} to {:.6g}", column.key, *low, *high)
+                                  : fmt::format("  {}: {} words", column.key, column.words.size()));
+  }
+}
+
 }  // namespace
 
 ModelIs model_of(const recipe::Recipe& recipe) {
   const bool base = gives(recipe, "base_dem"), before = gives(recipe, "before_dem");
   if (base == before)
-    throw RecipeError(Fault{base ? "[slides]: base_dem and before_dem are both given"
-                                 : "[slides]: neither base_dem nor before_dem is given in [preprocess]",
-                            "all slides lie on one elevation model",
-                            "Give base_dem (a mass is laid onto it) or before_dem (it is cut out of it)"});
+    throw RecipeError({base ? "[slides]: base_dem and before_dem are both given"
+                            : "[slides]: neither base_dem nor before_dem is given in [preprocess]",
+                       "all slides lie on one elevation model",
+                       "Give base_dem (a mass is laid onto it) or before_dem (it is cut out of it)"});
   for (const char* key : {"release", "polygon", "after_dem", "laboratory", "box", "place", "extent_m"})
     if (gives(recipe, key))
-      throw RecipeError(Fault{fmt::format("[preprocess]: {} beside [slides]", key),
-                              "[slides] says what fails, and which part of the model each slide gets", "Leave it out"});
+      throw RecipeError({fmt::format("[preprocess]: {} beside [slides]", key),
+                         "[slides] says what fails, and which part of the model each slide gets", "Leave it out"});
   return base ? ModelIs::base : ModelIs::before;
 }
 
@@ -137,7 +142,7 @@ EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& sli
   table.slides->windows = windows.windows;
   table.slides->ground = windows.ground;
   for (std::size_t place = 0; place < slides.front().set.size(); ++place)
-    table.columns.push_back(column_of(slides, place));
+    table.columns.push_back(column_at(slides, place));
   refuse_own_keys(table);
   for (std::size_t k = 0; k < slides.size(); ++k) {
     table.names.push_back(slides[k].name);
@@ -150,6 +155,44 @@ EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& sli
   check_keys(table, *plan.ground.front());
   plan.options.check_kept(table.count);
   return plan;
+}
+
+std::vector<fs::path> inputs_of_slides(const recipe::Recipe& recipe) {
+  const SlideOptions slides = slides_of(recipe);
+  std::vector<fs::path> inputs = inputs_of(shared_options(recipe, slides));
+  add_input(inputs, slides.outlines);
+  for (const ScenarioOptions& scenario : slides.scenario) add_input(inputs, scenario.outline);
+  return inputs;
+}
+
+SlidesMade make_slides(StageContext& context) {
+  const SlideOptions options = slides_of(context.recipe);
+  const ModelIs model = model_of(context.recipe);
+  const Options shared = resolved(shared_options(context.recipe, options));
+  const std::vector<Slide> slides = list_slides(options, model, open_model(shared).crs_wkt());
+  EnsemblePlan plan = plan_of(context.recipe, slides, windows_of(slides, options, shared), model);
+  say_plan(plan, options);
+  const std::vector<fs::path> inputs = inputs_of_slides(context.recipe);
+  if (context.check_only) return {inputs, {}, {}};
+  SurveyMemory memory;
+  const EnsembleBase base{shared, {}, memory, checksums_of(inputs), {}, {}, {}};
+  const EnsemblePaths paths{context.out};
+  remove_for_good(context.out / "domain.vdb");
+  const std::int64_t largest = write_ensemble(context, plan, base);
+  const std::string& id = plan.table.slides->domains[static_cast<std::size_t>(largest)];
+  return {inputs, {{"id", id}, {"slides", std::to_string(plan.table.count)}}, paths.domain(largest)};
+}
+
+void copy_largest(StageContext& context, const SlidesMade& made) {
+  const fs::path to = context.out / "domain.vdb";
+  PendingFile pending(to);
+  std::error_code failed;
+  fs::copy_file(made.largest, pending.path(), fs::copy_options::overwrite_existing, failed);
+  if (failed)
+    throw DataError({fmt::format("{}: cannot be copied to {}", made.largest.string(), to.string()), failed.message(),
+                     "Make room, or write elsewhere with --out"});
+  pending.commit();
+  context.results.push_back(to);
 }
 
 }  // namespace talus::preprocess

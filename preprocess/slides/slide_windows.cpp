@@ -10,8 +10,8 @@
 #include <mutex>
 
 #include "common/error.hpp"
-#include "common/map/crop.hpp"
-#include "common/stage/in_threads.hpp"
+#include "common/map/raster.hpp"
+#include "common/stage/machine.hpp"
 #include "preprocess/slides/slides.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/working_grid.hpp"
@@ -25,14 +25,6 @@ constexpr int ground_side = 1000;  // cells of the coarse ground along a side
 constexpr std::size_t most_readers = 16;
 constexpr double degrees = M_PI / 180;
 
-/// The model of the recipe; each thread opens it for itself.
-Elevation open_model(const Options& shared) {
-  const bool onto = shared.before_dem.empty();
-  return read_elevation(onto ? "base_dem" : "before_dem", shared.first_dem(),
-                        dem_reading(shared.working_crs, shared.vertical_unit));
-}
-
-/// The cells that a rectangle touches.
 struct CellBox {
   int west = 0, south = 0, east = 0, north = 0;  // the last ones not included
 
@@ -56,10 +48,6 @@ CellBox box_of(const std::vector<MapPolygon>& outline, const MapGrid& grid) {
   const auto cell = [&](double from) { return std::clamp(std::floor(from / grid.cell), -1e9, 1e9); };
   return {static_cast<int>(cell(west - grid.west)), static_cast<int>(cell(south - grid.south)),
           static_cast<int>(cell(east - grid.west)) + 1, static_cast<int>(cell(north - grid.south)) + 1};
-}
-
-bool is_inside(const CellBox& box, const MapGrid& grid) {
-  return box.west >= 0 && box.south >= 0 && box.east <= grid.columns && box.north <= grid.rows;
 }
 
 /// The ground within a box, and what of it lies below a line of reach from the outline's rectangle.
@@ -130,7 +118,7 @@ class OpenModels {
  public:
   explicit OpenModels(const Options& shared) : shared_(shared) {}
 
-  /// The method calls work(model) with a model that no other thread reads from meanwhile.
+  /// Calls work(model) with a model that no other thread reads from meanwhile.
   template <class Work>
   void use(const Work& work) {
     std::unique_ptr<const Elevation> model = take();
@@ -168,8 +156,8 @@ void require_inside(const std::vector<Slide>& slides, const std::vector<CellBox>
                     const std::filesystem::path& model) {
   std::vector<Fault> faults;
   for (std::size_t k = 0; k < slides.size(); ++k) {
-    if (is_inside(boxes[k], grid)) continue;
     const CellBox& b = boxes[k];
+    if (b.west >= 0 && b.south >= 0 && b.east <= grid.columns && b.north <= grid.rows) continue;
     faults.push_back(
         {fmt::format("{} ({}): its outline reaches beyond {}", slides[k].place, slides[k].name, model.string()),
          fmt::format("it covers x {:.0f}..{:.0f}, y {:.0f}..{:.0f}, the model x {:.0f}..{:.0f}, y "
@@ -214,6 +202,12 @@ void sample_ground(const Elevation& model, const MapGrid& lattice, const CellWin
 }
 
 }  // namespace
+
+Elevation open_model(const Options& shared) {
+  const bool onto = shared.before_dem.empty();
+  return read_elevation(onto ? "base_dem" : "before_dem", shared.first_dem(),
+                        dem_reading(shared.working_crs, shared.vertical_unit));
+}
 
 SlideWindows windows_of(const std::vector<Slide>& slides, const SlideOptions& options, const Options& shared) {
   const Elevation model = open_model(shared);

@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "common/ensemble/member_table.hpp"
-#include "common/ensemble/slide_options.hpp"
-#include "common/gis/polygons.hpp"
+#include "common/ensemble/options.hpp"
+#include "common/gis/features.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
 #include "preprocess/options/options.hpp"
+#include "preprocess/terrain/elevation.hpp"
 
 namespace talus::preprocess {
 
-/// What the elevation model of [preprocess] is: base_dem, onto which a slide is laid, or before_dem, out of which it is
-/// cut under its outline.
+/// The elevation model of [preprocess]: base_dem, onto which a slide is laid, or before_dem, out of which it is cut.
 enum class ModelIs { base, before };
 
 /// The keys that say how much a slide releases: laid onto base_dem, cut out of before_dem.
@@ -38,9 +38,11 @@ inline bool is_amount(std::string_view key) {
 /// Which of them the recipe means. Throws RecipeError: neither or both are given, or what fails is given besides.
 ModelIs model_of(const recipe::Recipe& recipe);
 
-/// The options of [preprocess] that all slides share; what fails stands for that of any slide. Reads no layer. Throws
-/// RecipeError.
+/// The options of [preprocess] that all slides share; what fails is that of any. Reads no layer. Throws RecipeError.
 Options shared_options(const recipe::Recipe& recipe, const SlideOptions& slides);
+
+/// The elevation model of the recipe; each thread opens it for itself.
+Elevation open_model(const Options& shared);
 
 /// One slide, as the recipe and the attributes of its polygons give it.
 struct Slide {
@@ -56,8 +58,7 @@ struct Slide {
 };
 
 /// The slides that a recipe lists, in the order of layer and list; every layer is read once. Throws DataError and
-/// RecipeError with all that is wrong: no polygons, attributes that are missing or NULL, names twice, keys that are not
-/// set for all.
+/// RecipeError with all that is wrong: no polygons, missing or NULL attributes, names twice, keys not set for all.
 std::vector<Slide> list_slides(const SlideOptions& options, ModelIs model, const std::string& crs_wkt);
 
 /// The parts of the model that slides get.
@@ -67,23 +68,20 @@ struct SlideWindows {
   Raster ground;                    ///< the model within them, at the centres of coarser cells [m]; NaN elsewhere
 };
 
-/// The windows of all slides, in parallel; only the cells within are read. Throws DataError with all outlines that lie
-/// beyond the model.
+/// The windows of all slides, in parallel; only the cells within are read. Throws DataError: outlines beyond the model.
 SlideWindows windows_of(const std::vector<Slide>& slides, const SlideOptions& options, const Options& shared);
 
 /// The members that slides are.
 EnsemblePlan plan_of(const recipe::Recipe& recipe, const std::vector<Slide>& slides, const SlideWindows& windows,
                      ModelIs model);
 
-/// What was made of the slides of a recipe.
 struct SlidesMade {
   std::vector<std::filesystem::path> inputs;  ///< files that were read
   Facts facts;                                ///< for the used recipe
   std::filesystem::path largest;              ///< the domain with the most points; empty: nothing was written
 };
 
-/// talus-preprocess for [slides]: members.h5 and a domain for each slide. With context.check_only it lists and tests,
-/// and writes nothing.
+/// talus-preprocess for [slides]: members.h5 and a domain for each slide; with context.check_only nothing is written.
 SlidesMade make_slides(StageContext& context);
 
 /// domain.vdb: a copy of the domain with the most points, by which talus-solve plans. Where it lies, all is there.

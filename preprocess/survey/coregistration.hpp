@@ -4,19 +4,12 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <vector>
 
-#include "common/map/polygon.hpp"
 #include "preprocess/survey/patches.hpp"
 
 namespace talus::preprocess {
-
-/// What counts as stable ground.
-struct StableGround {
-  double steepest = 45;             ///< [deg]; steeper cells are left out: a small shift changes them much
-  double roughest = 3;              ///< left out where rougher than the median by so many NMAD
-  std::vector<MapPolygon> outside;  ///< the slide and all else that changed
-};
 
 /// How residuals are spread [m].
 struct Residuals {
@@ -37,10 +30,6 @@ struct Coregistration {
 };
 
 inline constexpr std::size_t least_cells = 100;
-
-/// Marks the cells of the patches that are steep, rough or inside a polygon as not stable. Roughness is the distance
-/// from the mean of the eight neighbours.
-void find_stable(std::vector<Patch>& patches, const StableGround& limits);
 
 /// Shift, vertical offset and (if asked for) tilt of the later survey, found on stable ground after Nuth & Kaeaeb
 /// (2011), The Cryosphere 5, 271: the misfit of a shifted surface is the scalar product of shift and slope,

@@ -7,23 +7,21 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/map/cells_inside.hpp"
 #include "common/map/polygon.hpp"
-#include "common/map/sum.hpp"
-#include "preprocess/survey/slide_growth.hpp"
+#include "common/map/statistics.hpp"
+#include "preprocess/survey/change.hpp"
 #include "preprocess/survey/survey.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 std::vector<char> deposit_cells(const Change& change, const std::vector<MapPolygon>& outline, std::vector<char> slide,
                                 const std::filesystem::path& file) {
   if (!outline.empty()) {
     std::vector<char> inside = cells_inside(outline, change.rise.grid);
-    if (std::none_of(inside.begin(), inside.end(), [](char c) { return c != 0; }))
-      throw DataError(Fault{file.string() + ": no polygon covers a cell of the working grid",
-                            "the deposit would be empty", "Check the CRS of both with ogrinfo and gdalinfo"});
+    if (std::ranges::none_of(inside, [](char c) { return c != 0; }))
+      throw DataError({file.string() + ": no polygon covers a cell of the working grid", "the deposit would be empty",
+                       "Check the CRS of both with ogrinfo and gdalinfo"});
     for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = inside[i] && change.rise.values[i] > 0;
     return inside;
   }
@@ -36,16 +34,14 @@ std::vector<char> deposit_cells(const Change& change, const std::vector<MapPolyg
 double edge_error(const Raster& thickness, const Change& change, const Raster& sigma) {
   const MapGrid& grid = thickness.grid;
   Sum sum;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const std::size_t i = grid.index(column, row);
-      const double size = std::abs(change.rise.values[i]), beyond = size - change.levels[i];
-      if (!(std::abs(beyond) < sigma.values[i]) || (beyond > 0) != (thickness.values[i] > 0)) continue;
-      bool beside = false;
-      each_near(grid, {column, row}, 1, [&](int c, int r) { beside = beside || thickness.at(c, r) > 0; });
-      if (beside) sum.add(size);
-    }
-  }
+  each_cell(grid, [&](int column, int row) {
+    const std::size_t i = grid.index(column, row);
+    const double size = std::abs(change.rise.values[i]), beyond = size - change.levels[i];
+    if (!(std::abs(beyond) < sigma.values[i]) || (beyond > 0) != (thickness.values[i] > 0)) return;
+    bool beside = false;
+    each_near(grid, {column, row}, 1, [&](int c, int r) { beside = beside || thickness.at(c, r) > 0; });
+    if (beside) sum.add(size);
+  });
   return sum.value() * grid.cell * grid.cell / 2;
 }
 
@@ -85,14 +81,13 @@ std::string outside_words(const SurveyedSlide& slide) {
       "no noise",
       grouped(o.rise), grouped(o.fall), grouped(o.sure_rise), grouped(o.sure_fall));
   if (!o.place.empty()) words += fmt::format(" (the largest region, {} m3, at {})", grouped(o.largest), o.place);
-  if (slide.outside_is_doubtful) {
+  if (slide.outside_is_doubtful)
     words += fmt::format(
         ". Of what counts as noise, {} m3 of rise and {} m3 of fall lie within reach of the slide, {:.0f} % of what "
         "fell or rose in it: so much may be missing in source, deposit and run-out, and in every score against them. "
         "If it belongs to the slide, draw the deposit: polygon in [preprocess.deposit]",
         grouped(slide.near.rise), grouped(slide.near.fall),
         100 * std::max(slide.near.rise, slide.near.fall) / larger_of(slide));
-  }
   if (!slide.outside_is_large) return words;
   return words + fmt::format(
                      ". That is {:.0f} % of what fell or rose in the slide, too much for a score: if it belongs to the "
@@ -100,11 +95,12 @@ std::string outside_words(const SurveyedSlide& slide) {
                      100 * o.unbalanced() / larger_of(slide));
 }
 
-Change change_between(const SurveyPair& surfaces, const DepositOptions& given, const SurveyedSlide& slide) {
+Change change_between(const Raster& before, const Raster& after, const DepositOptions& given,
+                      const SurveyedSlide& slide) {
   const std::vector<double> noise = levels_of(slide.sigma);
-  Change change{surfaces.after, noise, noise};
+  Change change{after, noise, noise};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
-    change.rise.values[i] -= surfaces.before.values[i];
+    change.rise.values[i] -= before.values[i];
     change.levels[i] = std::max(change.levels[i], given.threshold);
   }
   return change;
@@ -112,9 +108,9 @@ Change change_between(const SurveyPair& surfaces, const DepositOptions& given, c
 
 void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& given, SurveyedSlide& slide) {
   const auto& [before, after, source] = surfaces;
-  const Change change = change_between({before, after}, given, slide);
+  const Change change = change_between(before, after, given, slide);
   const std::vector<Region> sure = sure_regions(change, given);
-  const std::vector<char> moved = grown_slide({before, source}, sure, given),
+  const std::vector<char> moved = grown_slide(before, source, sure, given),
                           deposit = deposit_cells(change, survey.deposit, moved, given.polygon);
   std::vector<char> inside = moved;
   for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = inside[i] || deposit[i] || source.values[i] > 0;
@@ -125,7 +121,7 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Deposi
     const double rise = change.rise.values[i];
     if (deposit[i] || std::isnan(rise)) slide.deposit.values[i] = rise;
     if (inside[i] || std::isnan(rise)) slide.change.values[i] = rise;
-    if (!slide.filled.values.empty() && slide.filled.values[i] > 0) slide.change.values[i] = std::nan("");
+    if (!slide.filled.values.empty() && slide.filled.values[i] > 0) slide.change.values[i] = nan;
   }
   slide.volumes = {
       {"source", volume_in(source, slide, survey.source.empty() ? &change : nullptr, survey.errors)},
@@ -133,7 +129,7 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Deposi
   const double share = given.outside_share * larger_of(slide);
   slide.outside_is_large = survey.deposit.empty() && slide.outside.unbalanced() > share;
   if (!survey.deposit.empty() || slide.outside_is_large) return;
-  slide.near = change_near({before, source}, change, inside, given);
+  slide.near = change_near(before, source, change, inside, given);
   slide.outside_is_doubtful = std::max(slide.near.rise, slide.near.fall) > share;
 }
 

@@ -2,33 +2,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/survey/survey.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include "common/error.hpp"
-#include "common/gis/polygons.hpp"
-#include "common/map/sum.hpp"
+#include "common/gis/features.hpp"
+#include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 constexpr double noticeable_shift = 0.2;    // cells
 constexpr double well_known = 0.1;          // cells: a shift whose standard error is larger is warned of
 constexpr double noticeable_height = 0.05;  // [m]
-
-void read_outlines(Survey& s, const Options& options) {
-  if (!options.source.polygon.empty())
-    s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
-  if (!options.deposit.polygon.empty())
-    s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
-}
 
 /// The polygons of what changed: named ones, source and deposit.
 std::vector<MapPolygon> changed_ground(const Survey& s, const std::filesystem::path& named) {
@@ -46,22 +40,22 @@ MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Opt
   constexpr double longest = 1e8, most = 1e11;  // cells: at some 10 million a second a night's work
   const double cells = static_cast<double>(grid.columns) * grid.rows;
   if (grid.columns > longest || grid.rows > longest || cells > most)
-    throw DataError(Fault{fmt::format("{} and {} share {} x {} cells", before.file.string(), after.file.string(),
-                                      grid.columns, grid.rows),
-                          fmt::format("surveys of up to {:g} cells, {:g} along a side, are compared", most, longest),
-                          "Cut the slide and its surroundings out of both (gdal_translate -projwin)"});
+    throw DataError({fmt::format("{} and {} share {} x {} cells", before.file.string(), after.file.string(),
+                                 grid.columns, grid.rows),
+                     fmt::format("surveys of up to {:g} cells, {:g} along a side, are compared", most, longest),
+                     "Cut the slide and its surroundings out of both (gdal_translate -projwin)"});
   return grid;
 }
 
 [[noreturn]] void refuse_alignment(const Survey& s, std::size_t shared) {
-  throw DataError(Fault{
-      fmt::format("{}: no stable ground to align it on ({} cells are shared with {})", s.after.file.string(),
-                  grouped(static_cast<double>(shared)), s.before.file.string()),
-      fmt::format(
-          "{} cells are needed that are neither steep nor rough nor part of the slide, and more of them than changed",
-          least_cells),
-      "Give elevation models that reach further beyond the slide, name the changed ground in "
-      "[preprocess.coregistration], or align the models beforehand and set mode = \"off\""});
+  throw DataError(
+      {fmt::format("{}: no stable ground to align it on ({} cells are shared with {})", s.after.file.string(),
+                   grouped(static_cast<double>(shared)), s.before.file.string()),
+       fmt::format(
+           "{} cells are needed that are neither steep nor rough nor part of the slide, and more of them than changed",
+           least_cells),
+       "Give elevation models that reach further beyond the slide, name the changed ground in "
+       "[preprocess.coregistration], or align the models beforehand and set mode = \"off\""});
 }
 
 double largest_shift_error(const Survey& s) { return std::max(s.fit.shift_error[0], s.fit.shift_error[1]); }
@@ -137,12 +131,84 @@ void say_alignment(const Survey& s) {
   }
   const std::string where = fmt::format("{}: on stable ground it lies {} of {}", s.after.file.string(),
                                         placement_words(s), s.before.file.string());
-  if (s.applied) {
+  if (s.applied)
     log_info(where + "; corrected");
-  } else if (noticeable(s)) {
+  else if (noticeable(s))
     warn("surveys-not-aligned", where + ". Correct it: mode = \"apply\" in [preprocess.coregistration]");
-  }
   warn_of_vague_shift(s);
+}
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Residuals& r) {
+  return {{"cells", r.count},
+          {"median_m", r.median},
+          {"nmad_m", r.nmad},
+          {"rmse_m", r.rmse},
+          {"median_absolute_m", r.median_absolute}};
+}
+
+/// An error that is not known (NaN) is written as null.
+Json json_of(const VolumeWithError& v) { return {{"volume_m3", v.volume}, {"error_m3", v.error}, {"area_m2", v.area}}; }
+
+Json json_of(const Budget& b) {
+  return {{"erosion", json_of(b.erosion)}, {"deposition", json_of(b.deposition)}, {"net", json_of(b.net)}};
+}
+
+/// How the later survey lay, not how it was moved: a shift to the east reads as one.
+Json alignment_of(const Survey& s) {
+  if (!s.fit.known) return {{"known", false}};
+  const Placement& p = s.fit.placement;
+  return {{"known", true},
+          {"applied", s.applied},
+          {"after_lies_east_m", -p.x},
+          {"after_lies_north_m", -p.y},
+          {"after_lies_east_error_m", s.fit.shift_error[0]},
+          {"after_lies_north_error_m", s.fit.shift_error[1]},
+          {"after_lies_error_cells", std::max(s.fit.shift_error[0], s.fit.shift_error[1]) / s.grid.cell},
+          {"after_lies_high_m", -p.z},
+          {"after_tilts_east_m_per_km", -1000 * p.tilt_x},
+          {"after_tilts_north_m_per_km", -1000 * p.tilt_y},
+          {"horizontal_shift_known", s.fit.shift_known},
+          {"iterations", s.fit.iterations},
+          {"converged", s.fit.converged},
+          {"stable_share", s.fit.stable_share},
+          {"stable_ground_as_it_came", json_of(s.fit.unaligned)},
+          {"stable_ground_aligned", json_of(s.fit.aligned)}};
+}
+
+Json error_of(const Survey& s) {
+  const Variogram& v = s.errors.variogram();
+  Json json{{"known", s.errors.is_known()}, {"same_share", s.errors.same_share()}};
+  if (!s.errors.is_known()) return json;
+  json["cell_m"] = s.errors.typical();
+  json["given"] = s.errors.is_given();
+  json["mean_height_m"] = s.errors.offset();
+  for (int deg = 0; deg <= 60; deg += 10)
+    json["by_slope_m"][std::to_string(deg) + "_deg"] = s.errors.sigma(std::tan(deg * 0.017453292519943295));
+  json["variogram"] = {{"nugget", v.nugget},
+                       {"short_sill", v.short_sill},
+                       {"short_range_m", v.short_range},
+                       {"long_sill", v.long_sill},
+                       {"long_range_m", v.long_range},
+                       {"lags_m", v.lags},
+                       {"semivariance", v.semivariance}};
+  json["level_of_detection_m"] = level_of_detection(s.errors.sigma(0));
+  return json;
+}
+
+Json outside_of(const SurveyedSlide& slide) {
+  const ChangeOutside& o = slide.outside;
+  return {{"rise_m3", o.rise},
+          {"fall_m3", o.fall},
+          {"sure_rise_m3", o.sure_rise},
+          {"sure_fall_m3", o.sure_fall},
+          {"largest_region_m3", o.largest},
+          {"large", slide.outside_is_large},
+          {"noise_within_reach_rise_m3", slide.near.rise},
+          {"noise_within_reach_fall_m3", slide.near.fall},
+          {"doubtful", slide.outside_is_doubtful},
+          {"words", outside_words(slide)}};
 }
 
 }  // namespace
@@ -153,12 +219,15 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   s.before = std::move(before);
   s.after = std::move(after);
   s.grid = whole_overlap(s.before, s.after, options);
-  read_outlines(s, options);
+  if (!options.source.polygon.empty())
+    s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
+  if (!options.deposit.polygon.empty())
+    s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
   const double given = options.difference.sigma;
   s.errors = ErrorModel::of(given);
   if (how.mode == Alignment::off && given > 0) return s;
   std::vector<Patch> patches = patches_of(s.before, s.after, s.grid);
-  find_stable(patches, {.outside = changed_ground(s, how.changed)});
+  find_stable(patches, changed_ground(s, how.changed));
   s.fit = coregister(patches, true, s.after.file);
   if (!s.fit.known && how.mode == Alignment::apply) refuse_alignment(s, s.grid.count());
   s.applied = how.mode == Alignment::apply;
@@ -199,9 +268,8 @@ std::vector<std::string> as_lines(const Survey& s) {
                                  : s.errors.sigma(1) > 1.1 * s.errors.sigma(0) ? " (more on steep ground)"
                                                                                : "",
                                  100 * v.nugget);
-  for (const auto& [sill, range] : {std::pair{v.short_sill, v.short_range}, {v.long_sill, v.long_range}}) {
+  for (const auto& [sill, range] : {std::pair{v.short_sill, v.short_range}, {v.long_sill, v.long_range}})
     if (sill > 0) line += fmt::format(", {:.0f} % alike over {:.0f} m", 100 * sill, range);
-  }
   lines.push_back(line);
   return lines;
 }
@@ -231,6 +299,26 @@ std::vector<double> levels_of(const Raster& sigma) {
   std::vector<double> levels;
   for (const double value : sigma.values) levels.push_back(level_of_detection(value));
   return levels;
+}
+
+std::string survey_json(const Survey& s, const Budgets& budgets, const std::optional<SurveyedSlide>& slide,
+                        const Facts& marks) {
+  Json json{{"before", s.before.file.string()},
+            {"after", s.after.file.string()},
+            {"cell_m", s.grid.cell},
+            {"columns", s.grid.columns},
+            {"rows", s.grid.rows},
+            {"id", fact(marks, domain_id)},
+            {"recipe", fact(marks, recipe_of_domain)}};
+  json["alignment"] = alignment_of(s);
+  json["error"] = error_of(s);
+  json["volumes"] = {{"raw", json_of(budgets.raw)}, {"beyond_level_of_detection", json_of(budgets.thresholded)}};
+  if (slide) {
+    for (const SurveyedVolume& side : slide->volumes) json[side.name] = json_of(side.volume);
+    json["outside_slide"] = outside_of(*slide);
+  }
+  json["findings"] = Json::parse(to_json(findings_so_far()));
+  return json.dump(2) + "\n";
 }
 
 }  // namespace talus::preprocess

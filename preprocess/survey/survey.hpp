@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "common/map/polygon.hpp"
+#include "common/stage/identity.hpp"
+#include "preprocess/survey/change.hpp"
 #include "preprocess/survey/coregistration.hpp"
 #include "preprocess/survey/difference.hpp"
-#include "preprocess/survey/slide_growth.hpp"
 #include "preprocess/terrain/voids.hpp"
 
 namespace talus::preprocess {
@@ -35,7 +36,6 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
 /// What a Survey says, as people read it.
 std::vector<std::string> as_lines(const Survey& survey);
 
-/// One side of the slide as surveyed.
 struct SurveyedVolume {
   std::string name;
   VolumeWithError volume;
@@ -66,13 +66,9 @@ std::string outside_words(const SurveyedSlide& slide);
 /// Level of detection of every cell.
 std::vector<double> levels_of(const Raster& sigma);
 
-/// Two surfaces on the same cells.
-struct SurveyPair {
-  const Raster &before, &after;
-};
-
 /// After less before, with what of it is believed.
-Change change_between(const SurveyPair& surfaces, const DepositOptions& given, const SurveyedSlide& slide);
+Change change_between(const Raster& before, const Raster& after, const DepositOptions& given,
+                      const SurveyedSlide& slide);
 
 /// Both surfaces, and the source's thickness on the same cells.
 struct SlideSurfaces {
@@ -83,5 +79,10 @@ struct SlideSurfaces {
 /// sure_regions() and grown_slide() find it, which may be nothing. Volumes of source and deposit with their errors: of
 /// the surveys, of what was filled, and of where the edge is drawn; and what changed outside the slide.
 void delineate(const Survey& survey, const SlideSurfaces& surfaces, const DepositOptions& given, SurveyedSlide& slide);
+
+/// Alignment, error, variogram and volumes as JSON; keys carry their unit (docs/reference/formats.md). `marks` are
+/// those of the preparation (identity.hpp).
+std::string survey_json(const Survey& survey, const Budgets& budgets, const std::optional<SurveyedSlide>& slide,
+                        const Facts& marks = {});
 
 }  // namespace talus::preprocess

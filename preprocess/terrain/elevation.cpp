@@ -6,40 +6,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/error.hpp"
-#include "common/gis/coordinates.hpp"
-#include "common/gis/crs.hpp"
-#include "common/gis/read_raster.hpp"
 #include "common/gis/resampling.hpp"
-#include "common/map/crop.hpp"
-#include "common/map/sum.hpp"
+#include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/terrain/scattered.hpp"
+#include "preprocess/terrain/triangulation.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 /// A mean that does not pass over voids: cells that hold the centre of one are void.
 void keep_voids(const Raster& raster, Raster& result) {
   const MapGrid &from = raster.grid, &to = result.grid;
-  for (int row = 0; row < from.rows; ++row) {
-    for (int column = 0; column < from.columns; ++column) {
-      if (!std::isnan(raster.at(column, row))) continue;
-      const double c = std::floor((from.x(column) - to.west) / to.cell),
-                   r = std::floor((from.y(row) - to.south) / to.cell);
-      if (c < 0 || r < 0 || c >= to.columns || r >= to.rows) continue;
-      result.at(static_cast<int>(c), static_cast<int>(r)) = std::numeric_limits<double>::quiet_NaN();
-    }
-  }
+  each_cell(from, [&](int column, int row) {
+    if (!std::isnan(raster.at(column, row))) return;
+    const double c = std::floor((from.x(column) - to.west) / to.cell),
+                 r = std::floor((from.y(row) - to.south) / to.cell);
+    if (c < 0 || r < 0 || c >= to.columns || r >= to.rows) return;
+    result.at(static_cast<int>(c), static_cast<int>(r)) = nan;
+  });
 }
 
 /// The mean of the cells within coarser ones. Where these do not hold whole cells, the mean of cells cut at their edges
-/// would be off by part of a cell, which on a slope is metres of height; so the surface is first read off on
-/// cells that do fit.
+/// would be off by part of a cell, which on a slope is metres of height; so cells that fit come first.
 Raster coarsened(const Raster& raster, const MapGrid& grid, Interpolation interpolation) {
   const int parts = static_cast<int>(std::ceil(grid.cell / raster.grid.cell - 1e-6));
   MapGrid fine = grid;
@@ -54,9 +45,8 @@ Raster coarsened(const Raster& raster, const MapGrid& grid, Interpolation interp
 
 double volume_of(const Raster& thickness) {
   Sum sum;
-  for (double t : thickness.values) {
+  for (double t : thickness.values)
     if (!std::isnan(t)) sum.add(t);
-  }
   return sum.value() * thickness.grid.cell * thickness.grid.cell;
 }
 
@@ -64,10 +54,10 @@ void require_same_crs(const Raster& thickness, const MapGrid& grid, const std::f
   require_comparable_crs(thickness.grid.crs_wkt, file, grid.crs_wkt, "the working grid");
   if (same_crs(thickness.grid.crs_wkt, grid.crs_wkt)) return;
   const std::string wanted = crs_name(grid.crs_wkt);
-  throw DataError(Fault{
-      fmt::format("{}: CRS is {}, the working grid's is {}", file.string(), crs_name(thickness.grid.crs_wkt), wanted),
-      "a thickness is resampled within one CRS only, to keep its volume",
-      fmt::format("Reproject: gdalwarp -t_srs {} -r average {} out.tif", wanted, file.string())});
+  throw DataError(
+      {fmt::format("{}: CRS is {}, the working grid's is {}", file.string(), crs_name(thickness.grid.crs_wkt), wanted),
+       "a thickness is resampled within one CRS only, to keep its volume",
+       fmt::format("Reproject: gdalwarp -t_srs {} -r average {} out.tif", wanted, file.string())});
 }
 
 const char* name_of(VerticalUnit unit) {
@@ -111,6 +101,19 @@ void warn_of_steps(const std::filesystem::path& file, double step, double cell) 
        {{"step", step, "m"}});
 }
 
+/// As it was read, not placed.
+Raster read_off(const Elevation& elevation, const MapGrid& grid) {
+  const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
+  if (elevation.scattered)
+    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid,
+                                 elevation.file);
+  if (one_crs && same_lattice(elevation.raster.grid, grid)) return cut_to(elevation.raster, grid);
+  const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
+  const Interpolation interpolation = elevation.placement.moves() ? Interpolation::quintic : Interpolation::bilinear;
+  if (one_crs && coarser) return coarsened(elevation.raster, grid, interpolation);
+  return resample_elevation(elevation.raster, grid, interpolation);
+}
+
 }  // namespace
 
 Extent Elevation::extent() const {
@@ -134,15 +137,14 @@ std::string utm_zone_for(const std::filesystem::path& dem) {
         points.crs_wkt.empty() ? "" : utm_zone_at(points.crs_wkt, 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
   }
   if (zone.empty())
-    throw DataError(Fault{dem.string() + ": its UTM zone cannot be told", "it names no CRS, or lies near a pole",
-                          "Name the zone: working_crs = \"EPSG:326..\" (north) or \"EPSG:327..\" (south)"});
+    throw DataError({dem.string() + ": its UTM zone cannot be told", "it names no CRS, or lies near a pole",
+                     "Name the zone: working_crs = \"EPSG:326..\" (north) or \"EPSG:327..\" (south)"});
   log_info(fmt::format("working_crs: \"utm\" is {}, by the centre of {}", zone, dem.string()));
   return zone;
 }
 
-Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how) {
+Elevation read_elevation(const std::string& key, const std::filesystem::path& file, const ReadOptions& how) {
   Elevation elevation;
-  elevation.key = std::move(key);
   elevation.file = file;
   elevation.scattered = is_point_file(file);
   if (elevation.scattered) {
@@ -153,29 +155,12 @@ Elevation read_elevation(std::string key, const std::filesystem::path& file, con
     if (!elevation.reprojected) options.to_crs.clear();
     elevation.on_disk = std::make_shared<RasterFile>(file, options);
     elevation.raster.grid = elevation.on_disk->grid();
-    if (!elevation.key.starts_with("bed."))
+    if (!key.starts_with("bed."))
       warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0),
                     elevation.cell());
   }
   return elevation;
 }
-
-namespace {
-
-/// As it was read, not placed.
-Raster read_off(const Elevation& elevation, const MapGrid& grid) {
-  const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
-  if (elevation.scattered)
-    return interpolate_scattered(one_crs ? elevation.points : transform_points(elevation.points, grid.crs_wkt), grid,
-                                 elevation.file);
-  if (one_crs && same_lattice(elevation.raster.grid, grid)) return cut_to(elevation.raster, grid);
-  const bool coarser = grid.cell > elevation.cell() * (1 + 1e-6);
-  const Interpolation interpolation = elevation.placement.moves() ? Interpolation::quintic : Interpolation::bilinear;
-  if (one_crs && coarser) return coarsened(elevation.raster, grid, interpolation);
-  return resample_elevation(elevation.raster, grid, interpolation);
-}
-
-}  // namespace
 
 Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
   const Placement& placement = elevation.placement;
@@ -190,10 +175,9 @@ Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
   Raster result = read_off(elevation, from);
   result.grid = grid;
   if (!placement.given()) return result;
-  for (int row = 0; row < grid.rows; ++row) {
+  for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
       result.at(column, row) += placement.rise(grid.x(column), grid.y(row));
-  }
   return result;
 }
 
@@ -233,15 +217,14 @@ Raster thickness_onto_grid(const Raster& thickness, const MapGrid& grid, const s
   require_same_crs(thickness, grid, file);
   Raster result = same_lattice(thickness.grid, grid) ? cut_to(thickness, grid) : resample_thickness(thickness, grid);
   const auto has_data = [](double t) { return !std::isnan(t); };
-  const bool overlaps = std::any_of(result.values.begin(), result.values.end(), has_data);
+  const bool overlaps = std::ranges::any_of(result.values, has_data);
   for (double& t : result.values) t = std::isnan(t) ? 0.0 : t;
   const double whole = volume_of(thickness), kept = volume_of(result);
-  if (!overlaps || kept < whole * (1 - 1e-9)) {
-    throw DataError(Fault{fmt::format("{}: {} of {} m3 lie outside the working grid", file.string(),
-                                      grouped(whole - kept), grouped(whole)),
-                          "the release must lie on the DEM",
-                          "Give a DEM that reaches further, or widen the crop in [preprocess.grid]"});
-  }
+  if (!overlaps || kept < whole * (1 - 1e-9))
+    throw DataError({fmt::format("{}: {} of {} m3 lie outside the working grid", file.string(), grouped(whole - kept),
+                                 grouped(whole)),
+                     "the release must lie on the DEM",
+                     "Give a DEM that reaches further, or widen the crop in [preprocess.grid]"});
   return result;
 }
 
@@ -261,9 +244,9 @@ void require_comparable_crs(const std::string& crs, const std::filesystem::path&
   if (crs.empty() == other_crs.empty()) return;
   const std::string bare = crs.empty() ? file.string() : other_file, named = crs.empty() ? other_file : file.string();
   const std::string name = crs_name(crs.empty() ? other_crs : crs);
-  throw DataError(Fault{fmt::format("{}: has no CRS, while that of {} is {}", bare, named, name),
-                        "they cannot be laid over one another",
-                        fmt::format("If it is the same, say so: gdal_edit.py -a_srs {} {}", name, bare)});
+  throw DataError({fmt::format("{}: has no CRS, while that of {} is {}", bare, named, name),
+                   "they cannot be laid over one another",
+                   fmt::format("If it is the same, say so: gdal_edit.py -a_srs {} {}", name, bare)});
 }
 
 }  // namespace talus::preprocess

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/gis/coordinates.hpp"
+#include "common/gis/crs.hpp"
 #include "common/gis/raster_file.hpp"
 #include "common/map/raster.hpp"
 #include "preprocess/options/options.hpp"
@@ -24,7 +24,6 @@ struct Placement {
 
   /// What is added to the height at a place [m].
   double rise(double at_x, double at_y) const { return z + tilt_x * (at_x - centre_x) + tilt_y * (at_y - centre_y); }
-  /// True when it shifts on the map.
   bool moves() const { return x != 0 || y != 0; }
   /// True when it changes anything.
   bool given() const { return moves() || z != 0 || tilt_x != 0 || tilt_y != 0; }
@@ -32,7 +31,6 @@ struct Placement {
 
 /// A raster, or scattered points, of elevations [m].
 struct Elevation {
-  std::string key;  // its key in the recipe: "after_dem"
   std::filesystem::path file;
   bool scattered = false;
   bool reprojected = false;                   // as it was read: its data end in slanting lines
@@ -46,21 +44,20 @@ struct Elevation {
   /// What its cells or points cover, in their own CRS [m].
   Extent extent() const;
   /// Width of its cells [m]; 0 for points, which have none.
-  double cell() const { return scattered ? 0.0 : raster.grid.cell; }  // 0 = has none
+  double cell() const { return scattered ? 0.0 : raster.grid.cell; }
 };
 
 /// How elevation models are read: what degrees and feet become, and the unit of heights. `working_crs` is the name of a
 /// CRS in metres, "" where the recipe gives none; it is used for files in degrees or feet alone, and those in metres
-/// are brought onto the working grid in one step, later. Throws RecipeError for a CRS that is not known or not in
-/// metres.
+/// are brought onto the working grid in one step, later. Throws RecipeError for a CRS not known or not in metres.
 ReadOptions dem_reading(const std::string& working_crs, VerticalUnit unit);
 
 /// The name of the UTM zone (on WGS 84) that holds the centre of an elevation model, for working_crs = "utm"; the log
 /// names it. Throws DataError where the file names no CRS or lies near a pole.
 std::string utm_zone_for(const std::filesystem::path& dem);
 
-/// Read a raster by any GDAL format, or points (see is_point_file). Throws DataError.
-Elevation read_elevation(std::string key, const std::filesystem::path& file, const ReadOptions& how = {});
+/// Read a raster by any GDAL format, or points (see is_point_file), under its key in the recipe. Throws DataError.
+Elevation read_elevation(const std::string& key, const std::filesystem::path& file, const ReadOptions& how = {});
 
 /// Copied where its cells are the grid's cells, resampled or triangulated otherwise (moved by less than a cell: by
 /// six-point interpolation, which does not flatten crests); NaN where it has no data.

@@ -2,21 +2,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/terrain/geo_input.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <initializer_list>
+#include <utility>
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
 #include "common/error.hpp"
-#include "common/gis/crs.hpp"
-#include "common/gis/point_layer.hpp"
-#include "common/gis/vertical_unit.hpp"
+#include "common/gis/features.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/terrain/point_table.hpp"
+#include "common/table_words.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 bool is_text(const std::filesystem::path& file) {
@@ -24,11 +26,6 @@ bool is_text(const std::filesystem::path& file) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return extension == ".csv" || extension == ".xyz" || extension == ".txt";
-}
-
-/// GDAL takes a table of points for a raster when their distances happen to be multiples of one another.
-bool is_sparse_table(const std::filesystem::path& file, const RasterGlance& raster) {
-  return raster.driver == "XYZ" && read_point_table(file).x.size() < raster.cells;
 }
 
 void to_metres(ScatteredPoints& points, const std::filesystem::path& file, const std::string& vertical_unit) {
@@ -39,6 +36,86 @@ void to_metres(ScatteredPoints& points, const std::filesystem::path& file, const
   for (double& z : points.z) z *= metres;
   log_info(fmt::format("{}: {} {} {}, converted to metres (x {:.10g})", file.string(),
                        points.are_depths ? "depths" : "heights", named ? "are in" : "taken as", unit, metres));
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return std::tolower(c); });
+  return result;
+}
+
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), lower(name)) != names.end();
+}
+
+/// "Depth (m)" is depth in m, "depth_us_ft" depth in us ft.
+struct NameAndUnit {
+  std::string name, unit;
+};
+
+NameAndUnit split(std::string_view text) {
+  constexpr std::string_view parting = "_-([ ])";
+  const std::size_t end = std::min(text.find_first_of(parting), text.size());
+  NameAndUnit result{lower(text.substr(0, end)), ""};
+  for (const char c : lower(text.substr(end))) {
+    const bool parts = parting.find(c) != std::string_view::npos;
+    if (!parts) result.unit += c;
+    if (parts && !result.unit.empty() && result.unit.back() != ' ') result.unit += ' ';
+  }
+  while (result.unit.ends_with(' ')) result.unit.pop_back();
+  return result;
+}
+
+bool is_place_name(std::string_view text, std::initializer_list<std::string_view> names) {
+  const auto [name, unit] = split(text);
+  return (unit.empty() || unit == "m") && is_one_of(name, names);
+}
+
+bool is_x_name(std::string_view text) { return is_place_name(text, {"x", "easting", "east", "longitude", "lon"}); }
+bool is_y_name(std::string_view text) { return is_place_name(text, {"y", "northing", "north", "latitude", "lat"}); }
+
+struct Columns {
+  std::array<std::size_t, 3> of{0, 1, 2};  // x, y, z
+  HeightName z;
+};
+
+/// A unit in brackets belongs to the name before it.
+std::vector<std::string> names_of_header(const std::vector<std::string>& words) {
+  std::vector<std::string> names;
+  for (const std::string& word : words)
+    if (!names.empty() && (word.starts_with('(') || word.starts_with('[')))
+      names.back() += word;
+    else
+      names.push_back(word);
+  return names;
+}
+
+/// A header is a first line that names all three columns. Depths go before elevations, which are the ground's then.
+std::optional<Columns> columns_of_header(const std::vector<std::string>& words, PointHeights heights) {
+  const std::vector<std::string> names = names_of_header(words);
+  std::array<std::optional<std::size_t>, 3> found;
+  HeightName z;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (is_x_name(names[i])) found[0] = i;
+    if (is_y_name(names[i])) found[1] = i;
+    const auto height = height_name(names[i]);
+    if (!height || (height->depth ? heights == PointHeights::elevations : z.depth)) continue;
+    found[2] = i;
+    z = *height;
+  }
+  if (!found[0] || !found[1] || !found[2]) return std::nullopt;
+  return Columns{{*found[0], *found[1], *found[2]}, z};
+}
+
+/// Throws DataError where points are in degrees or feet; `or_else` names another way out (see ReadOptions).
+void require_metric(const ScatteredPoints& points, const std::filesystem::path& file, const std::string& or_else) {
+  if (is_metric(points.crs_wkt)) return;
+  const Extent e = points.extent();
+  const std::string zone = utm_zone_at(points.crs_wkt, 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
+  throw DataError(
+      {fmt::format("{}: CRS is {}", file.string(), crs_name(points.crs_wkt)), "this stage needs metres",
+       fmt::format("Reproject: ogr2ogr -t_srs {} {}_utm.gpkg {}{}", zone.empty() ? "EPSG:<a metric one>" : zone,
+                   file.stem().string(), file.string(), or_else.empty() ? "" : "; " + or_else)});
 }
 
 }  // namespace
@@ -52,20 +129,20 @@ Extent ScatteredPoints::extent() const {
 
 std::string metric_crs(const std::string& name) {
   std::string wkt = crs_by_name(name);
-  if (wkt.empty()) {
-    throw RecipeError(Fault{"[preprocess]: working_crs = \"" + name + "\"", "no such CRS is known",
-                            "Name it by its code, as in \"EPSG:32633\""});
-  }
-  if (!is_metric(wkt)) {
-    throw RecipeError(Fault{"[preprocess]: working_crs = \"" + name + "\"", "its coordinates are not in metres",
-                            "Name a projected CRS in metres, such as the UTM zone of the place"});
-  }
+  if (wkt.empty())
+    throw RecipeError({"[preprocess]: working_crs = \"" + name + "\"", "no such CRS is known",
+                       "Name it by its code, as in \"EPSG:32633\""});
+  if (!is_metric(wkt))
+    throw RecipeError({"[preprocess]: working_crs = \"" + name + "\"", "its coordinates are not in metres",
+                       "Name a projected CRS in metres, such as the UTM zone of the place"});
   return wkt;
 }
 
 bool is_point_file(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return false;
-  if (const auto raster = glance_at_raster(file)) return is_text(file) && is_sparse_table(file, *raster);
+  if (const auto raster =
+          glance_at_raster(file))  // also of points whose distances happen to be multiples of one another
+    return is_text(file) && raster->driver == "XYZ" && read_point_table(file).x.size() < raster->cells;
   return is_text(file) || holds_points(file);
 }
 
@@ -99,16 +176,6 @@ ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::p
   return points;
 }
 
-void require_metric(const ScatteredPoints& points, const std::filesystem::path& file, const std::string& or_else) {
-  if (is_metric(points.crs_wkt)) return;
-  const Extent e = points.extent();
-  const std::string zone = utm_zone_at(points.crs_wkt, 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
-  throw DataError(
-      Fault{fmt::format("{}: CRS is {}", file.string(), crs_name(points.crs_wkt)), "this stage needs metres",
-            fmt::format("Reproject: ogr2ogr -t_srs {} {}_utm.gpkg {}{}", zone.empty() ? "EPSG:<a metric one>" : zone,
-                        file.stem().string(), file.string(), or_else.empty() ? "" : "; " + or_else)});
-}
-
 ScatteredPoints read_points(const std::filesystem::path& file, const ReadOptions& how, PointHeights heights) {
   ScatteredPoints points = read_points_as_given(file, heights);
   to_metres(points, file, how.vertical_unit);
@@ -126,6 +193,51 @@ ScatteredPoints read_points(const std::filesystem::path& file, const ReadOptions
 ScatteredPoints transform_points(ScatteredPoints points, const std::string& to_wkt) {
   transform_places(points.crs_wkt, to_wkt, points.x, points.y);
   points.crs_wkt = to_wkt;
+  return points;
+}
+
+std::optional<HeightName> height_name(std::string_view text) {
+  const auto [name, unit] = split(text);
+  const bool depth = name == "depth";
+  const bool is_unit =
+      is_one_of(unit, {"", "m", "metre", "metres", "meter", "meters", "ft", "foot", "feet", "us ft", "ft us",
+                       "us survey foot", "us survey feet"});  // else part of the name: "depth of bedrock"
+  if (!is_unit || (!depth && !is_one_of(name, {"z", "elevation", "elev", "height", "altitude"}))) return std::nullopt;
+  return HeightName{depth, unit};
+}
+
+ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights heights) {
+  require_plain(file);
+  std::ifstream stream(file);
+  if (!stream) throw DataError({file.string() + ": cannot be opened", "missing or not readable", "Check the path"});
+  ScatteredPoints points;
+  Columns columns;
+  std::string line;
+  bool first = true;
+  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+    const auto words = table_words(line);
+    if (words.empty()) continue;
+    if (std::exchange(first, false)) {
+      if (const auto named = columns_of_header(words, heights)) {
+        columns = *named;
+        points.are_depths = named->z.depth;
+        points.unit = named->z.unit;
+        continue;
+      }
+    }
+    std::array<double, 3> xyz{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto value = columns.of[i] < words.size() ? finite_number(words[columns.of[i]]) : std::nullopt;
+      if (!value)
+        throw DataError({fmt::format("{}: line {}: \"{}\"", file.string(), line_number, line.substr(0, 60)),
+                         "not three numbers x, y, z", "Mend the line, or name the columns x,y,z in a first line"});
+      xyz[i] = *value;
+    }
+    points.x.push_back(xyz[0]);
+    points.y.push_back(xyz[1]);
+    points.z.push_back(xyz[2]);
+  }
+  require_read(stream, file);
   return points;
 }
 

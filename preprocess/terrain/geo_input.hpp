@@ -4,10 +4,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "common/gis/coordinates.hpp"
+#include "common/gis/crs.hpp"
 #include "common/gis/raster_file.hpp"
 
 namespace talus::preprocess {
@@ -28,8 +30,7 @@ enum class PointHeights { elevations, depths_or_elevations };
 /// WKT2 of a CRS named in the recipe ("EPSG:32149"). Throws RecipeError when unknown or not in metres.
 std::string metric_crs(const std::string& name);
 
-/// True for a vector file of points, or a text file of x, y, z columns (.csv, .xyz, .txt) that is no gapless raster to
-/// GDAL.
+/// True for a vector file of points, or a text file (.csv, .xyz, .txt) of x, y, z that is no gapless raster.
 bool is_point_file(const std::filesystem::path& file);
 
 /// Points as they lie in their file, whatever their CRS. A header line names the columns x, y, z (any order and case;
@@ -42,9 +43,6 @@ ScatteredPoints read_points_as_given(const std::filesystem::path& file,
 /// A text file cannot name its CRS; places that all could be longitude and latitude are taken for that, with a warning.
 ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file);
 
-/// Throws DataError where points are in degrees or feet; `or_else` names another way out (see ReadOptions).
-void require_metric(const ScatteredPoints& points, const std::filesystem::path& file, const std::string& or_else = "");
-
 /// read_points_as_given(), in metres: z by the unit in the name of its column, else by `how.vertical_unit`; places in
 /// degrees or feet moved to `how.to_crs`, and refused where that is empty.
 ScatteredPoints read_points(const std::filesystem::path& file, const ReadOptions& how = {},
@@ -52,5 +50,18 @@ ScatteredPoints read_points(const std::filesystem::path& file, const ReadOptions
 
 /// The points in another CRS.
 ScatteredPoints transform_points(ScatteredPoints points, const std::string& to_wkt);
+
+/// What the name of a column says of the heights in it.
+struct HeightName {
+  bool depth = false;  // below the ground; else elevations
+  std::string unit;    // "m", "ft", "us ft", as metres_in() knows them; "" = not said
+};
+
+/// Reads z, elevation, elev, height, altitude or depth, in any case, alone or with a unit behind it ("depth_m", "Z
+/// (ft)"); nullopt for any other name.
+std::optional<HeightName> height_name(std::string_view name);
+
+/// Columns separated by commas, semicolons, tabs or blanks; '#' starts a comment. Throws DataError with the line.
+ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights heights = PointHeights::elevations);
 
 }  // namespace talus::preprocess

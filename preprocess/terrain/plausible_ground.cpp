@@ -10,13 +10,10 @@
 #include <numbers>
 
 #include "common/gis/crs.hpp"
-#include "common/gis/ground_scale.hpp"
-#include "common/map/slope.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 constexpr double refused = 0.01, told = 0.001;  // parts of a length
@@ -29,9 +26,8 @@ constexpr std::size_t least_cells_told = 100;  // fewer cells have no usual slop
 double steep_tenth(const Raster& surface) {
   const std::vector<double> all = slope_cosine(surface);
   std::vector<double> cosine;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (std::size_t i = 0; i < all.size(); ++i)
     if (!std::isnan(surface.values[i])) cosine.push_back(all[i]);
-  }
   if (cosine.size() < least_cells_told) return 0;
   const auto tenth = cosine.begin() + static_cast<std::ptrdiff_t>(steep_share * static_cast<double>(cosine.size()));
   std::nth_element(cosine.begin(), tenth, cosine.end());
@@ -81,23 +77,22 @@ void judge_lengths(const MapGrid& grid, const std::string& working_crs) {
   }
 }
 
-void judge_heights(const Raster& surface, const HeightSource& source) {
+void judge_heights(const Raster& surface, const std::filesystem::path& file, VerticalUnit unit) {
   const double steep = steep_tenth(surface);
   double highest = -INFINITY;
-  for (const double z : surface.values) {
+  for (const double z : surface.values)
     if (z > highest) highest = z;  // false for nodata
-  }
   if (steep <= steep_deg && highest <= highest_mountain) return;
   refuse_unless_accepted(
       "steep-ground",
       {fmt::format("{}: a tenth of the ground is steeper than {:.0f} degrees, the highest lies at {:.0f} m",
-                   source.file.string(), steep, highest),
+                   file.string(), steep, highest),
        fmt::format("terrain has {:.0f} degrees at most there, and no mountain is higher than {:.0f} m: are heights in "
                    "feet, which the file does not say, or places in another unit than heights? As feet it were {:.0f} "
                    "degrees",
                    steep_deg, highest_mountain,
                    std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
-       unit_advice(source.unit)},
+       unit_advice(unit)},
       {{"slope_of_steepest_tenth", steep, "degree"}, {"highest", highest, "m"}});
 }
 

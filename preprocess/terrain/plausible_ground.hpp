@@ -15,15 +15,9 @@ namespace talus::preprocess {
 /// `working_crs` is the recipe's, so that nothing is advised that is done.
 void judge_lengths(const MapGrid& grid, const std::string& working_crs);
 
-/// Where heights come from, and what the recipe says they are in.
-struct HeightSource {
-  std::filesystem::path file;
-  VerticalUnit unit = VerticalUnit::declared;
-};
-
 /// Refuses, unless accepted ("steep-ground"), ground where a tenth of a surface [m] is steeper than 50 degrees or some
 /// of it is higher than 9,000 m, as where feet are taken for metres. On the terrain at hand (notes/plausibility.md) a
 /// tenth is steeper than 26 to 43 degrees, and read as feet 58 to 72.
-void judge_heights(const Raster& surface, const HeightSource& source);
+void judge_heights(const Raster& surface, const std::filesystem::path& file, VerticalUnit unit);
 
 }  // namespace talus::preprocess

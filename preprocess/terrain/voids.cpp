@@ -2,40 +2,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/terrain/voids.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "common/map/sum.hpp"
-#include "preprocess/terrain/hole_filler.hpp"
-#include "preprocess/terrain/surfaces.hpp"
+#include <fmt/format.h>
+
+#include "common/map/statistics.hpp"
+#include "preprocess/regions/regions.hpp"
+#include "preprocess/terrain/triangulation.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
-
 namespace {
 
 constexpr int most_trials = 8;
 constexpr std::size_t enough_cells = 200;  // of a trial hole: more would not change the estimate
-const double unknown = std::numeric_limits<double>::quiet_NaN();
+const double unknown = nan;
 
 using Hole = std::vector<Cell>;
-
-/// The marked cells that hang together with one; they are unmarked.
-Hole take_hole(const MapGrid& grid, std::vector<char>& marked, Cell seed) {
-  Hole hole{seed};
-  marked[grid.index(seed[0], seed[1])] = 0;
-  for (std::size_t i = 0; i < hole.size(); ++i) {
-    each_near(grid, Cell(hole[i]), 1, [&](int c, int r) {  // a copy: the hole grows
-      if (!marked[grid.index(c, r)]) return;
-      marked[grid.index(c, r)] = 0;
-      hole.push_back({c, r});
-    });
-  }
-  return hole;
-}
 
 /// Voids that do not reach the edge, in the order of their cells.
 std::vector<Hole> holes_of(const Raster& raster) {
@@ -45,11 +32,9 @@ std::vector<Hole> holes_of(const Raster& raster) {
   const std::vector<char> outside = reaching_edge(grid, marked);
   for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = marked[i] && !outside[i];
   std::vector<Hole> holes;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      if (marked[grid.index(column, row)]) holes.push_back(take_hole(grid, marked, {column, row}));
-    }
-  }
+  each_cell(grid, [&](int column, int row) {
+    if (marked[grid.index(column, row)]) holes.push_back(take_connected(grid, marked, {Cell{column, row}}));
+  });
   return holes;
 }
 
@@ -61,7 +46,7 @@ Hole rim_of(const Raster& raster, const Hole& hole) {
       if (!std::isnan(raster.at(c, r))) rim.push_back({c, r});
     });
   }
-  std::sort(rim.begin(), rim.end());
+  std::ranges::sort(rim);
   rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
   return rim;
 }
@@ -78,19 +63,12 @@ std::vector<double> distances(const Raster& raster, const Hole& hole) {
   return result;
 }
 
-Hole moved(const Hole& hole, int columns, int rows) {
-  Hole result = hole;
-  for (auto& [column, row] : result) column += columns, row += rows;
-  return result;
-}
-
 /// True when a hole would lie, with its rim, on cells that have a value.
 bool on_data(const Raster& raster, const Hole& hole) {
-  return std::all_of(hole.begin(), hole.end(), [&](const Cell& cell) {
+  return std::ranges::all_of(hole, [&](const Cell& cell) {
     for (int r = cell[1] - 1; r <= cell[1] + 1; ++r) {
-      for (int c = cell[0] - 1; c <= cell[0] + 1; ++c) {
+      for (int c = cell[0] - 1; c <= cell[0] + 1; ++c)
         if (!raster.grid.holds(c, r) || std::isnan(raster.at(c, r))) return false;
-      }
     }
     return true;
   });
@@ -110,7 +88,8 @@ std::vector<Hole> trial_holes(const Raster& raster, const Hole& hole) {
     for (int v = -1; v <= 1; ++v) {
       for (int u = -1; u <= 1; ++u) {
         if ((u == 0 && v == 0) || trials.size() >= most_trials) continue;
-        Hole trial = moved(hole, u * k * width, v * k * height);
+        Hole trial = hole;
+        for (auto& [column, row] : trial) column += u * k * width, row += v * k * height;
         if (on_data(raster, trial)) trials.push_back(std::move(trial));
       }
     }
@@ -148,14 +127,83 @@ Worth worth_of(const Raster& raster, const Hole& hole, const std::vector<double>
   return worth;
 }
 
-VoidFill described(const MapGrid& grid, const Hole& hole) {
-  VoidFill fill;
-  fill.cells = hole.size();
-  fill.x = grid.x(hole.front()[0]);
-  fill.y = grid.y(hole.front()[1]);
-  fill.area_m2 = static_cast<double>(hole.size()) * grid.cell * grid.cell;
-  fill.rmse = unknown;
-  return fill;
+constexpr int reach = 7;                // cells around that tell what is usual
+constexpr double times_beside = 3;      // the second largest deviation among the neighbours
+constexpr double times_usual = 10;      // NMAD
+constexpr double cells_high = 0.25;     // of a cell: what a slope may do to a median of eight
+constexpr double nmad_of_mad = 1.4826;  // makes the median absolute deviation of a normal distribution its sigma
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Height above the median of the neighbours that have one opposite them, so that a slope has no part in it; NaN where
+/// there are fewer than two such pairs, as at the edge.
+double deviation(const Raster& raster, int column, int row) {
+  if (column < 1 || row < 1 || column >= raster.grid.columns - 1 || row >= raster.grid.rows - 1) return nan;
+  constexpr std::array<std::array<int, 2>, 4> directions{{{1, 0}, {1, 1}, {0, 1}, {-1, 1}}};
+  std::array<double, 8> heights{};
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const auto [u, v] = directions[i];
+    const double one = raster.at(column + u, row + v), opposite = raster.at(column - u, row - v);
+    const bool both = !std::isnan(one + opposite);
+    pairs += both;
+    heights[2 * i] = both ? one : -INFINITY;  // a missing pair leaves the middle where it is
+    heights[2 * i + 1] = both ? opposite : INFINITY;
+  }
+  if (pairs < 2) return nan;
+  std::ranges::sort(heights);
+  return raster.at(column, row) - 0.5 * (heights[3] + heights[4]);
+}
+
+/// NMAD of the deviations around a cell, its own left out.
+double usual_around(const Raster& deviations, int column, int row) {
+  std::vector<double> values;
+  each_near(deviations.grid, {column, row}, reach, [&](int c, int r) {
+    const double value = deviations.at(c, r);
+    if ((c != column || r != row) && !std::isnan(value)) values.push_back(value);
+  });
+  if (values.empty()) return 0;
+  const double centre = median(values);
+  for (double& value : values) value = std::abs(value - centre);
+  return nmad_of_mad * median(values);
+}
+
+/// The second largest deviation among the eight neighbours: large on a summit or crest, small beside one or two spikes.
+double second_beside(const Raster& deviations, int column, int row) {
+  double first = 0, second = 0;
+  for (int r = row - 1; r <= row + 1; ++r) {
+    for (int c = column - 1; c <= column + 1; ++c) {
+      const double value = std::abs(deviations.at(c, r));
+      if ((c == column && r == row) || !(value > second)) continue;
+      second = std::min(first, value);
+      first = std::max(first, value);
+    }
+  }
+  return second;
+}
+
+bool stands_out(double height, const Raster& deviations, int column, int row, double least) {
+  const double size = std::abs(height);
+  return size > least && size > times_beside * second_beside(deviations, column, row) &&
+         size > times_usual * usual_around(deviations, column, row);
+}
+
+/// Beside two pits a plain cell looks like a spike: the farthest out is taken first, and is no neighbour any more.
+std::vector<Outlier> without_shadows(Raster raster, const std::vector<Outlier>& candidates, const Raster& deviations,
+                                     double least) {
+  std::vector<Outlier> outliers;
+  for (const Outlier& candidate : candidates) {
+    const auto [column, row] = raster.grid.cell_of(candidate.cell);
+    const double height = deviation(raster, column, row);
+    if (!stands_out(height, deviations, column, row, least)) continue;
+    outliers.push_back({candidate.cell, height});
+    raster.values[candidate.cell] = nan;
+  }
+  return outliers;
 }
 
 }  // namespace
@@ -177,7 +225,12 @@ Filled fill_voids(Raster raster, double largest_m2) {
   Filled result{std::move(raster), std::vector<char>(grid.count(), 0), std::vector<double>(grid.count(), 0.0), {}};
   const Raster given = result.raster;  // holes are filled from data alone, not from one another
   for (const Hole& hole : holes_of(given)) {
-    VoidFill& fill = result.voids.emplace_back(described(grid, hole));
+    VoidFill& fill = result.voids.emplace_back();
+    fill.cells = hole.size();
+    fill.x = grid.x(hole.front()[0]);
+    fill.y = grid.y(hole.front()[1]);
+    fill.area_m2 = static_cast<double>(hole.size()) * grid.cell * grid.cell;
+    fill.rmse = unknown;
     if (fill.area_m2 > largest_m2 * (1 + 1e-9)) continue;
     const std::vector<double> distance = distances(given, hole);
     const auto farthest = std::max_element(distance.begin(), distance.end());
@@ -186,7 +239,7 @@ Filled fill_voids(Raster raster, double largest_m2) {
     fill.y = grid.y(deepest[1]);
     fill.largest_distance = *farthest * grid.cell;
     const std::vector<double> heights = fill_hole(given, hole, hole);
-    if (std::any_of(heights.begin(), heights.end(), [](double z) { return std::isnan(z); })) continue;
+    if (std::ranges::any_of(heights, [](double z) { return std::isnan(z); })) continue;
     const Worth worth = worth_of(given, hole, distance);
     fill.filled = true;
     fill.rmse = worth.rmse;
@@ -219,6 +272,35 @@ std::string summary(const Filled& filled) {
       "{} void{} of {} cells filled by natural neighbours (the largest {} cells; at most {:.0f} m from data; {})",
       count, count == 1 ? "" : "s", grouped(static_cast<double>(filled.count())), grouped(static_cast<double>(largest)),
       farthest, error);
+}
+
+std::vector<Outlier> spikes_and_pits(const Raster& raster, double minimum_m) {
+  const MapGrid& grid = raster.grid;
+  Raster deviations{grid, std::vector<double>(grid.count(), nan)};
+  each_cell(grid, [&](int column, int row) {
+    if (!std::isnan(raster.at(column, row))) deviations.at(column, row) = deviation(raster, column, row);
+  });
+  const double least = std::max(minimum_m, cells_high * grid.cell);
+  std::vector<Outlier> candidates;
+  each_cell(grid, [&](int column, int row) {
+    const double height = deviations.at(column, row);
+    if (stands_out(height, deviations, column, row, least)) candidates.push_back({grid.index(column, row), height});
+  });
+  std::ranges::sort(candidates,
+                    [](const Outlier& a, const Outlier& b) { return std::abs(a.height) > std::abs(b.height); });
+  return without_shadows(raster, candidates, deviations, least);
+}
+
+std::string summary(const std::vector<Outlier>& outliers, const MapGrid& grid) {
+  if (outliers.empty()) return "";
+  const auto spikes = std::ranges::count_if(outliers, [](const Outlier& o) { return o.height > 0; });
+  const auto pits = static_cast<std::ptrdiff_t>(outliers.size()) - spikes;
+  std::string text = fmt::format("{} spike{} and {} pit{} stand out from their neighbours: ", spikes,
+                                 spikes == 1 ? "" : "s", pits, pits == 1 ? "" : "s");
+  constexpr std::size_t named = 3;
+  for (std::size_t i = 0; i < std::min(named, outliers.size()); ++i)
+    text += fmt::format("{}{:+.1f} m at {}", i == 0 ? "" : "; ", outliers[i].height, place_of(grid, outliers[i].cell));
+  return outliers.size() > named ? text + "; ..." : text;
 }
 
 }  // namespace talus::preprocess

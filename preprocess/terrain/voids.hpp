@@ -42,7 +42,6 @@ Filled fill_voids(Raster raster, double largest_m2);
 /// "3 voids, 120 cells, filled (largest 80 cells, 4.2 cells from data; error 0.31 m)"; "" where nothing was filled.
 std::string summary(const Filled& filled);
 
-/// A cell that stands out.
 struct Outlier {
   std::size_t cell = 0;
   double height = 0;  // above the median of its neighbours [m]; negative = a pit
@@ -50,8 +49,7 @@ struct Outlier {
 
 /// Cells that lie further from the median of their eight neighbours than ten times what is usual around (the NMAD of
 /// such deviations within seven cells), than three times all but one of the neighbours do from theirs (summits and
-/// crests are no faults), and at least `minimum_m` and a quarter of a cell. The farthest out first. Not looked at:
-/// cells on the edge.
+/// crests are no faults), and at least `minimum_m` and a quarter of a cell. The farthest out first; none on the edge.
 std::vector<Outlier> spikes_and_pits(const Raster& raster, double minimum_m = 2.0);
 
 /// "2 spikes and 1 pit: 35.2 m at x 361265.6, y 71238.4; ..."; "" for none.

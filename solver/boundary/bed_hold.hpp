@@ -6,11 +6,7 @@
 #include <cstddef>
 
 #include "solver/boundary/column_flow.hpp"
-#include "solver/boundary/ground_turn.hpp"
-#include "solver/boundary/separation.hpp"
 #include "solver/boundary/walls.hpp"
-#include "solver/parallel/buffer.hpp"
-#include "solver/state/clock.hpp"
 
 namespace talus {
 
@@ -48,7 +44,6 @@ struct HeldColumns {
   const Real* lying = nullptr;  ///< mass that lies on the bed of every column [kg]; null: all are held
   Real load = 0;                ///< mass over area of bed from which a column is free [kg/m2]
 
-  /// Whether column (i, j) is held.
   TALUS_HD bool holds(const GridView<Real>& grid, int i, int j) const {
     if (!lying) return true;
     const int column = grid.column(i, j);
@@ -146,25 +141,19 @@ struct CountLanding {
 template <class Real, class Device>
 class BedHold {
  public:
-  /// The constructor takes the separation, the density of the mass [kg/m3], and the map's size; without a threshold
-  /// nothing is stored.
+  /// Takes the separation, the density of the mass [kg/m3] and the map's size; without a threshold nothing is stored.
   BedHold(const Device& device, const SeparationSettings& separation, double density, int map_columns, int map_rows)
       : acts_(separation.kind != Separation::free),
         load_(static_cast<Real>(density * separation.depth)),
         lying_(device) {
     if (separation.kind != Separation::thin) return;
-    lying_.resize(static_cast<std::size_t>(map_columns) * static_cast<std::size_t>(map_rows));
-    lying_.fill_zero();
+    lying_.resize_zeroed(static_cast<std::size_t>(map_columns) * static_cast<std::size_t>(map_rows));
   }
-  /// Whether any column is held.
-  bool acts() const { return acts_; }
-  /// Whether that depends on what lies on the bed.
-  bool measures() const { return lying_.size() > 0; }
+  bool acts() const { return acts_; }                  ///< whether any column is held
+  bool measures() const { return lying_.size() > 0; }  ///< whether that depends on what lies on the bed
   /// The columns as kernels see them.
   HeldColumns<Real> columns() { return {measures() ? lying_.data() : nullptr, load_}; }
-  /// The masses that lie on the bed, for MeasureLying.
-  Real* lying() { return lying_.data(); }
-  /// The size of the array [bytes].
+  Real* lying() { return lying_.data(); }  ///< masses that lie on the bed, for MeasureLying
   std::size_t bytes() const { return lying_.bytes(); }
 
  private:

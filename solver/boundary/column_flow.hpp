@@ -4,14 +4,9 @@
 // depth-averaged laws mean.
 #pragma once
 
-#include <cstddef>
-
 #include "solver/boundary/base_friction.hpp"
-#include "solver/parallel/atomics.hpp"
-#include "solver/parallel/launch.hpp"
+#include "solver/parallel/for_each.hpp"
 #include "solver/state/clock.hpp"
-#include "solver/state/gravity.hpp"
-#include "solver/state/grid_view.hpp"
 
 namespace talus {
 
@@ -114,18 +109,13 @@ TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int
   return cover_at_edge(line, as_wall);
 }
 
-/// A column's nodes in storage.
 struct ColumnNodes {
   BlockSlot slot;
   int i, j, column;
-  /// The stored node of layer k.
-  TALUS_HD int node(int k) const { return GridView<double>::node(slot, i, j, k); }
-  /// The first layer in storage.
-  TALUS_HD int begin() const { return slot.first_layer; }
-  /// The layer after the last one in storage.
-  TALUS_HD int end() const { return slot.first_layer + slot.layers; }
-  /// Whether there is such a column.
-  TALUS_HD bool in_domain() const { return column >= 0; }
+  TALUS_HD int node(int k) const { return GridView<double>::node(slot, i, j, k); }  ///< stored node of layer k
+  TALUS_HD int begin() const { return slot.first_layer; }                           ///< first layer in storage
+  TALUS_HD int end() const { return slot.first_layer + slot.layers; }  ///< layer after the last one in storage
+  TALUS_HD bool in_domain() const { return column >= 0; }              ///< whether there is such a column
 
   /// The column number c of the active blocks; see ActiveColumn. In no domain where the block reaches beyond the map.
   template <class Real>
@@ -155,8 +145,7 @@ TALUS_HD LyingMatter<Number> matter_in(const Nodes& nodes, const ColumnNodes& at
   }
   return sum;
 }
-/// This function sums what of a column lies on the bed: from its lowest node up to the first empty one. What flies
-/// above has no part in it.
+/// Sums what of a column lies on the bed: from its lowest node up to the first empty one, without what flies above.
 template <class Nodes, class Number = typename Nodes::Number>
 TALUS_HD LyingMatter<Number> lying_matter(const Nodes& nodes, const ColumnNodes& at) {
   int first = at.begin();
@@ -183,14 +172,12 @@ TALUS_HD ColumnBed<Number> bed_under(const GridView<Real>& grid, const Number* m
   return {normal_of(sx, sy), covered * h * h * steep};
 }
 
-/// The step in which columns slip.
 struct ColumnStep {
   Clock* clock;             ///< of the step, with its budget; null: no more is known than its duration
   double duration = 0;      ///< [s], without a clock
   Gravity<double> gravity;  ///< without a clock that of the step, with its shaking
 
-  /// The length of the step [s].
-  TALUS_HD double length() const { return clock ? clock->step_size : duration; }
+  TALUS_HD double length() const { return clock ? clock->step_size : duration; }  ///< length of the step [s]
   /// The pull of gravity into a bed, with that of the shaking [m/s2].
   template <class Number>
   TALUS_HD Number press(const Vec3<Number>& normal) const {
@@ -223,8 +210,7 @@ TALUS_HD Slip<Number> column_slip(const LyingMatter<Number>& matter, const Colum
           static_cast<Number>(step.length()), load};
 }
 
-/// One thread: one column. It measures what SlowColumns needs, where no other kernel of the step has: its mass, and its
-/// rise after a step under `gravity` [m/s2].
+/// One thread: one column. Measures what SlowColumns needs: its mass, and its rise after a step under `gravity` [m/s2].
 template <class Real, class Nodes>
 struct MeasureColumns {
   using Number = typename Nodes::Number;

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "solver/boundary/column_flow.hpp"
-#include "solver/parallel/buffer.hpp"
 #include "solver/parallel/columns.hpp"
 #include "solver/state/map_view.hpp"
 
@@ -77,7 +76,6 @@ struct SlowColumns {
     return at;
   }
 
-  /// The method adds the matter of layer k.
   TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
     const int n = at.nodes.node(k);
     const Number m = nodes.mass(n);
@@ -127,8 +125,17 @@ struct SlowColumns {
   }
 };
 
-/// What the bed does to columns as a whole, on a device: tractions, and friction of a law that asks for the column,
-/// with what they need to know of every column.
+template <class Real, class Nodes>
+struct StepColumns {
+  GridView<Real> grid;
+  const int* active;  ///< the blocks in use
+  int blocks;         ///< their number
+  Nodes nodes;
+  ColumnStep step;
+  int count() const { return blocks * block_columns; }  ///< number of columns
+};
+
+/// What the bed does to whole columns, on a device: tractions, and friction of a law that asks for the column.
 template <class Number, class Device>
 class ColumnTraction {
  public:
@@ -137,16 +144,10 @@ class ColumnTraction {
       : acts_(friction.has_traction()), mass_(device), rise_(device), coefficient_(device) {
     if (!acts_ && !friction.asks_column()) return;
     const std::size_t count = static_cast<std::size_t>(map_columns) * static_cast<std::size_t>(map_rows);
-    mass_.resize(count);
-    mass_.fill_zero();
-    rise_.resize(count);
-    rise_.fill_zero();
-    if (!friction.asks_column()) return;
-    coefficient_.resize(count);
-    coefficient_.fill_zero();
+    for (auto* numbers : {&mass_, &rise_}) numbers->resize_zeroed(count);
+    if (friction.asks_column()) coefficient_.resize_zeroed(count);
   }
-  /// Whether any traction acts.
-  bool acts() const { return acts_; }
+  bool acts() const { return acts_; }  ///< whether any traction acts
   /// Whether the coefficient of friction follows from the column.
   bool measures() const { return coefficient_.size() > 0; }
   /// The columns as kernels see them; null pointers where nothing is known of them.
@@ -162,8 +163,34 @@ class ColumnTraction {
     if (measures()) friction.measured = coefficient_.data();
     return friction;
   }
-  /// The size of the arrays [bytes].
   std::size_t bytes() const { return mass_.bytes() + rise_.bytes() + coefficient_.bytes(); }
+
+  /// The method measures the columns as a step begins, with their rise after `duration` [s] under `gravity` [m/s2], and
+  /// the coefficients of friction of a law that asks for the column.
+  template <class Real, class Nodes>
+  void measure(const Device& device, const StepColumns<Real, Nodes>& at, const BaseFriction<Number>& bed,
+               const Vec3<Number>& gravity = {}, Number duration = 0) {
+    for_each(device, at.count(),
+             MeasureColumns<Real, Nodes>{at.grid, at.active, at.nodes, columns(), gravity, duration});
+    if (!measures()) return;
+    for_each(device, at.count(),
+             MeasureCoefficients<Real, Nodes>{.grid = at.grid,
+                                              .active = at.active,
+                                              .nodes = at.nodes,
+                                              .friction = bed,
+                                              .mass = mass_.data(),
+                                              .coefficient = coefficient_.data(),
+                                              .step = at.step});
+  }
+
+  /// The method lets drag of the bed, and yield `with_yield`, slow what lies on it (T13a).
+  template <class Real, class Nodes>
+  void slow(const Device& device, const StepColumns<Real, Nodes>& at, const BaseFriction<Number>& bed, bool with_yield,
+            const ColumnDensity<Number>& density) {
+    for_each_column_twice<block_columns>(
+        device, at.blocks,
+        SlowColumns<Real, Nodes>{at.grid, at.active, at.nodes, bed, columns(), at.step, with_yield, density});
+  }
 
  private:
   bool acts_;

@@ -24,8 +24,7 @@ struct PackedNodes {
   using Number = Real;
   Vec4<Real>* nodes;
   Vec4<Real>* changes;  ///< of the velocity in the step; null where nothing reads them
-  /// The mass of node n [kg].
-  TALUS_HD Real mass(int n) const { return nodes[n].w; }
+  TALUS_HD Real mass(int n) const { return nodes[n].w; }  ///< mass of node n [kg]
   /// The velocity of node n [m/s].
   TALUS_HD Vec3<Real> velocity(int n) const { return {nodes[n].x, nodes[n].y, nodes[n].z}; }
   /// The method adds a change of velocity [m/s] to node n.
@@ -45,8 +44,7 @@ template <class Real>
 struct PackedMomenta {
   using Number = Real;
   const Vec4<Real>* nodes;
-  /// The mass of node n [kg].
-  TALUS_HD Real mass(int n) const { return nodes[n].w; }
+  TALUS_HD Real mass(int n) const { return nodes[n].w; }  ///< mass of node n [kg]
   /// The velocity of node n, which has mass [m/s].
   TALUS_HD Vec3<Real> velocity(int n) const {
     return Vec3<Real>{nodes[n].x, nodes[n].y, nodes[n].z} * (Real(1) / nodes[n].w);
@@ -176,19 +174,14 @@ class ContactImpulses {
     double step;
     bool grips, remembers;
   };
-  /// The method makes the sweeps of a pass over `node_count` nodes. How these answer to an impulse is the matter of
-  /// `inertia` (NodeInertia, ColumnInertia).
+  /// Makes the sweeps of a pass over `node_count` nodes, which answer by `inertia` (NodeInertia, ColumnInertia).
   template <class Nodes, class Inertia>
   void run(SurfaceContact<Real, Device, Shape>& contact, const GridView<Real>& grid, const Nodes& nodes, int node_count,
            const Inertia& inertia, const Pass& pass) {
     constexpr bool single = Inertia::of_single_nodes;
     impulse_.resize(static_cast<std::size_t>(contact.count()));
-    yielding_.resize(static_cast<std::size_t>(node_count));
-    yielding_.fill_zero();
-    if (given_.size() != static_cast<std::size_t>(node_count)) {
-      given_.resize(static_cast<std::size_t>(node_count));
-      given_.fill_zero();
-    }
+    yielding_.resize_zeroed(static_cast<std::size_t>(node_count));
+    if (given_.size() != yielding_.size()) given_.resize_zeroed(yielding_.size());
     const auto take = [&] { inertia.take(nodes, pass.clock, given_.data(), node_count); };
     contact.each(BeginContacts<Real, Shape, Nodes, single>{grid, contact.view(), nodes,
                                                            pass.remembers ? pass.clock : nullptr, impulse_.data(),
@@ -204,7 +197,6 @@ class ContactImpulses {
   }
   /// The impulses of the last pass at the contact points [N s], on the device.
   const Vec3<Real>* impulses() const { return impulse_.data(); }
-  /// The size of the arrays [bytes].
   std::size_t bytes() const { return impulse_.bytes() + given_.bytes() + yielding_.bytes(); }
 
  private:

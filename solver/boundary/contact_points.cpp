@@ -31,9 +31,8 @@ bool open_at(const GridShape& shape, const TerrainTables& terrain, double xi, do
 /// The six ways a piece of surface can mainly look.
 int facing(const std::array<double, 3>& area) {
   std::size_t axis = 0;
-  for (std::size_t a = 1; a < 3; ++a) {
+  for (std::size_t a = 1; a < 3; ++a)
     if (std::abs(area[a]) > std::abs(area[axis])) axis = a;
-  }
   return static_cast<int>(2 * axis) + (area[axis] > 0 ? 1 : 0);
 }
 
@@ -44,8 +43,7 @@ struct Bin {
 };
 using Bins = std::map<std::tuple<int, int, int, int>, Bin>;
 
-/// The facets above the ground, those of half a cell that look the same way as one: both faces of a wall thinner than a
-/// cell stay apart.
+/// The facets above the ground, those of half a cell that look one way as one: both faces of a thin wall stay apart.
 Bins exposed_facets(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
                     const BodySurface& surface) {
   Bins bins;

@@ -25,15 +25,20 @@ struct Obstacle {
 
 /// The points of the surfaces, on the host. They do not move and are sorted by the grid's blocks of columns.
 struct ContactPoints {
-  std::vector<int> cell[3];          ///< nearest node
-  std::vector<double> offset[3];     ///< from it, in cells [-0.5, 0.5)
-  std::vector<Vec3<double>> normal;  ///< outward, where the mass is
-  std::vector<double> area;          ///< [m2]
-  std::vector<int> body;             ///< index of the obstacle
-  std::vector<double> friction;      ///< coefficient of every obstacle [-]
-  std::vector<std::string> notes;    ///< a line on every obstacle
-  /// The number of points.
-  std::size_t size() const { return body.size(); }
+  std::vector<int> cell[3];                         ///< nearest node
+  std::vector<double> offset[3];                    ///< from it, in cells [-0.5, 0.5)
+  std::vector<Vec3<double>> normal;                 ///< outward, where the mass is
+  std::vector<double> area;                         ///< [m2]
+  std::vector<int> body;                            ///< index of the obstacle
+  std::vector<double> friction;                     ///< coefficient of every obstacle [-]
+  std::vector<std::string> notes;                   ///< a line on every obstacle
+  std::size_t size() const { return body.size(); }  ///< number of points
+};
+
+/// The history of the contact points of a run, three numbers for each; empty at the start.
+struct ContactState {
+  std::vector<double> force;    ///< on the mass, last step [N]
+  std::vector<double> impulse;  ///< on the mass so far [N s]
 };
 
 /// This function makes the points of the obstacles' surfaces, at most half a cell apart along each axis. It throws

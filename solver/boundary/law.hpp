@@ -28,13 +28,11 @@
 #include <algorithm>
 
 #include "solver/boundary/laws/coulomb.hpp"
-#include "solver/boundary/laws/none.hpp"
+#include "solver/boundary/laws/frictionless.hpp"
 #include "solver/boundary/laws/pouliquen.hpp"
 #include "solver/boundary/laws/samosat.hpp"
-#include "solver/boundary/laws/stick.hpp"
 #include "solver/boundary/laws/table.hpp"
 #include "solver/boundary/laws/velocity_weakening.hpp"
-#include "solver/boundary/laws/voellmy.hpp"
 
 namespace talus {
 
@@ -51,7 +49,6 @@ namespace talus {
 
 #define TALUS_ENUMERATOR(name, Law) name,
 #define TALUS_TYPE(name, Law) , Law
-/// The law of a bed, by its number in the list.
 enum class FrictionLaw { TALUS_FRICTION_LAWS(TALUS_ENUMERATOR) };
 using FrictionLaws = LawListBehind<void TALUS_FRICTION_LAWS(TALUS_TYPE)>;
 #undef TALUS_ENUMERATOR

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "solver/column_implicit/make_column_implicit_solver.hpp"
 #include "solver/column_implicit/solve_columns.hpp"
 #include "solver/integrator/batch_solver.hpp"
+#include "solver/integrator/make_solvers.hpp"
 
 namespace talus::solver {
 
@@ -74,10 +74,9 @@ class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape> {
   Buffer<Mobility<Real>, Device> mobilities_{device_};  ///< of the nodes
 };
 
-/// The definition for the files in instances/; see make_column_implicit_solver.hpp.
 template <class Real, class Shape>
-std::unique_ptr<Solver> make_column_implicit_solver(const Scene& scene, const IntegratorSettings& settings,
-                                                    const AnyDevice& device, const SolverState& state) {
+std::unique_ptr<Solver> ColumnImplicitSolvers<Real, Shape>::make(const Scene& scene, const IntegratorSettings& settings,
+                                                                 const AnyDevice& device, const SolverState& state) {
   return make_solver_on<ColumnImplicitSolver, Real, Shape>(device, scene, settings, state);
 }
 

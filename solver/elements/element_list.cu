@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "solver/grid/instances.hpp"
-#include "solver/parallel/runs.hpp"
+#include "solver/parallel/algorithms.hpp"
 
 namespace talus::solver {
 namespace {
@@ -58,30 +58,9 @@ void ElementList<Real, Device, Shape>::build(const GridView<Real>& grid, const P
   count_ = find_runs(keys_, starts_, scratch_);
   nodes_.resize(static_cast<std::size_t>(count_) * nodes_each);
   for_each(device_, count_, FindNodes<Real, Shape>{grid, keys_.data(), starts_.data(), nodes_.data()});
-  group_elements(grid.block_columns_x);
-}
-
-template <class Real, class Device, class Shape>
-void ElementList<Real, Device, Shape>::group_elements(int block_columns_x) {
-  if constexpr (!Device::is_gpu) {
-    const auto block_of = [&](int e) { return static_cast<int>(keys_.data()[starts_.data()[e]] >> key_block_shift); };
-    for (auto& ranges : groups_.ranges) ranges.clear();
-    for (int begin = 0; begin < count_;) {
-      const int block = block_of(begin);
-      int end = begin + 1;
-      while (end < count_ && block_of(end) == block) ++end;
-      const int colour = (block % block_columns_x & 1) + 2 * (block / block_columns_x & 1);
-      groups_.ranges[colour].emplace_back(begin, end);
-      begin = end;
-    }
-  } else {
-    static_cast<void>(block_columns_x);
-  }
-}
-
-template <class Real, class Device, class Shape>
-std::size_t ElementList<Real, Device, Shape>::bytes() const {
-  return keys_.bytes() + order_.bytes() + starts_.bytes() + nodes_.bytes() + scratch_.bytes();
+  if constexpr (!Device::is_gpu)
+    groups_.group(count_, grid.block_columns_x,
+                  [&](int e) { return keys_.data()[starts_.data()[e]] >> key_block_shift; });
 }
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class ElementList<Real, Device, Shape>;

@@ -10,8 +10,6 @@
 #include <cstdint>
 
 #include "solver/grid/shape_functions.hpp"
-#include "solver/parallel/for_each.hpp"
-#include "solver/state/grid_view.hpp"
 #include "solver/state/particles.hpp"
 
 namespace talus::solver {
@@ -39,20 +37,14 @@ class ElementList {
 
   /// The elements as kernels read them, until the next build().
   ElementView view() const { return {count_, starts_.data(), order_.data(), nodes_.data()}; }
-  /// The device that the elements are on.
-  const Device& device() const { return device_; }
-  /// The number of elements.
-  int count() const { return count_; }
-  /// The number of the last build.
-  int serial() const { return serial_; }
+  const Device& device() const { return device_; }  ///< device that the elements are on
+  int count() const { return count_; }              ///< number of elements
+  int serial() const { return serial_; }            ///< number of the last build
   /// The ranges of elements by colour of their column block; empty on the GPU, where sums are atomic.
   const PointGroups& groups() const { return groups_; }
-  /// The size of the lists [bytes].
-  std::size_t bytes() const;
+  std::size_t bytes() const { return bytes_of(keys_, order_, starts_, nodes_, scratch_); }
 
  private:
-  void group_elements(int block_columns_x);
-
   Device device_;
   int count_ = 0, serial_ = 0;
   Buffer<std::uint64_t, Device> keys_{device_};

@@ -6,9 +6,8 @@
 
 #include <type_traits>
 
-#include "solver/elements/element_list.hpp"
 #include "solver/elements/point_tangents.hpp"
-#include "solver/transfer/point_gradients.hpp"
+#include "solver/transfer/stencil.hpp"
 
 namespace talus::solver {
 
@@ -97,8 +96,7 @@ struct SumElements {
   }
 };
 
-/// This function runs SumElements over a list with the tile that suits the device. A sink may add to what other
-/// elements add to.
+/// Runs SumElements over a list with the tile that suits the device. A sink may add to what other elements add to.
 template <class Real, class Device, class Shape, class Sink>
 void sum_elements(const ElementList<Real, Device, Shape>& list, const PointTangents<Real>& from, const Sink& sink) {
   constexpr int w = Shape::width, nodes = w * w * w;

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "solver/elements/element_list.hpp"
-#include "solver/parallel/vectors.hpp"
+#include "solver/parallel/algorithms.hpp"
 
 namespace talus::solver {
 
@@ -32,8 +32,7 @@ struct FillerSprings {
   double light = 0;              ///< nodes of less mass are held [kg]
   double stiffness = 0;          ///< of the spring on an empty node [N/m]
 
-  /// Whether there are springs.
-  TALUS_HD bool on() const { return mass != nullptr; }
+  TALUS_HD bool on() const { return mass != nullptr; }  ///< whether there are springs
 
   /// The spring (T17a) of local node n of an element with these nodes, width^3 of them, numbered as in ElementView.
   template <int width>

@@ -3,12 +3,25 @@
 // Forces on the nodes from the points' stresses, or from their changes by the tangents: f_int of (T16), and K x.
 #pragma once
 
-#include "solver/elements/displacement_gradient.hpp"
 #include "solver/elements/point_tangents.hpp"
-#include "solver/material/tangent.hpp"
-#include "solver/transfer/point_gradients.hpp"
+#include "solver/transfer/stencil.hpp"
 
 namespace talus::solver {
+
+/// The state that point p begins a step with; without `dilatant` its plastic volume change is zero.
+template <class Real>
+TALUS_HD MaterialState<Real> state_of(const ParticleView<Real>& points, int p, bool dilatant) {
+  return {points.elastic_of(p), points.log_volume[p], dilatant ? points.plastic_log_volume[p] : Real(0)};
+}
+
+/// The displacement gradient G of a point over the start of the step, F = I + G in (T16) [-]; `u` by stored nodes [m].
+template <class Real, class Shape>
+TALUS_HD Mat3<Real> displacement_gradient(const GridView<Real>& grid, const PointGradients<Real, Shape>& g,
+                                          const Vec3<double>* u) {
+  Mat3<Real> gradient{};
+  around(grid, g, [&](int n, int a, int b, int c) { add_outer(gradient, narrow<Real>(u[n]), g.gradient(a, b, c)); });
+  return gradient;
+}
 
 /// The scatter that sums V P grad N over the points, the internal force f_int of (T16) or its change: P = law(p, its
 /// gradients) is the nominal stress, and may keep what belongs to the point.
@@ -47,16 +60,12 @@ struct ScatterForces : PointScatter<Real, Shape> {
     TALUS_UNROLL
     for (int c = 0; c < Base::deep; ++c) sums[c] += widen(g.pull * g.gradient(Base::along_x(q), Base::along_y(q), c));
   }
-  /// The sums go to a stored node.
   TALUS_HD void add_to_node(int at, const Sums& sums) const { scatter_add(&forces[at], sums); }
-  /// The three numbers of a node's sums are put side by side.
   TALUS_HD static void store(const Sums& sums, double* to) { put(sums, to); }
-  /// The location of component q of a stored node's force.
   TALUS_HD double* part(int node, int q) const { return &forces[node].x + q; }
 };
 
-/// The law of ScatterForces that gives the stress for the displacement u, and stores the tangent (T17) as well where
-/// there is a store for it.
+/// The law of ScatterForces that gives the stress for the displacement u, and the tangent (T17) where there is a store.
 template <class Real, class Shape, class Laws = MaterialLaws>
 struct StressAt {
   /// In double precision the first cache has room for the local arrays of so many.
@@ -87,8 +96,7 @@ struct StressAt {
   }
 };
 
-/// The law of ScatterForces that gives the change of the stress for a displacement x, by the tangents: K x, point by
-/// point, never assembled.
+/// The law of ScatterForces for the change of the stress with a displacement x, by the tangents: K x, never assembled.
 template <class Real, class Shape>
 struct TangentTimes {
   static constexpr int tiles_at_once = 8;  ///< worth the few registers that go through memory

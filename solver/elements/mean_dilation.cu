@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/elements/mean_dilation.hpp"
 
-#include "solver/elements/displacement_gradient.hpp"
+#include "solver/elements/forces.hpp"
 #include "solver/grid/instances.hpp"
 
 namespace talus::solver {

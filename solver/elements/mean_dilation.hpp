@@ -11,7 +11,7 @@
 
 #include "solver/elements/element_list.hpp"
 #include "solver/material/tangent.hpp"
-#include "solver/parallel/vectors.hpp"
+#include "solver/parallel/algorithms.hpp"
 
 namespace talus::solver {
 
@@ -24,8 +24,7 @@ struct MeanDilationView {
   const Real* stiffness = nullptr;       ///< kappa V: volume times the mean bulk response [N m], [elements]
   const Vec3<Real>* gradient = nullptr;  ///< b [1/m], [elements * W^3]
 
-  /// Whether the scene averages.
-  TALUS_HD bool on() const { return element_of != nullptr; }
+  TALUS_HD bool on() const { return element_of != nullptr; }  ///< whether the scene averages
   /// The means of the element that point p belongs to; off where the scene does not average.
   TALUS_HD MeanVolume<Real> at_point(int p) const {
     if (!on()) return {};
@@ -43,12 +42,10 @@ class MeanDilation {
   explicit MeanDilation(const Device& device)
       : element_of_(device), increment_(device), stress_(device), stiffness_(device), gradient_(device) {}
 
-  /// The method begins a step with new elements, after the points have moved or have been sorted. `points` is their
-  /// number.
+  /// Begins a step with new elements, after the points have moved or have been sorted. `points` is their number.
   void begin_step(const ElementList<Real, Device, Shape>& list, int points);
 
-  /// A step as the means see it: displacement of the stored nodes [m], duration [s], and whether points may dilate
-  /// plastically.
+  /// A step as the means see it: displacement of stored nodes [m], duration [s], whether points may dilate plastically.
   struct Motion {
     const Vec3<double>* u;
     double duration;
@@ -62,10 +59,7 @@ class MeanDilation {
   MeanDilationView<Real> view() const {
     return {element_of_.data(), increment_.data(), stress_.data(), stiffness_.data(), gradient_.data()};
   }
-  /// The size of the means [bytes].
-  std::size_t bytes() const {
-    return element_of_.bytes() + increment_.bytes() + stress_.bytes() + stiffness_.bytes() + gradient_.bytes();
-  }
+  std::size_t bytes() const { return bytes_of(element_of_, increment_, stress_, stiffness_, gradient_); }
 
  private:
   Buffer<int, Device> element_of_;
@@ -73,8 +67,7 @@ class MeanDilation {
   Buffer<Vec3<Real>, Device> gradient_;
 };
 
-/// This function adds to y the forces of the means' stiffness, the sum of kappa V b (b . x) over the elements; x and y
-/// [nodes].
+/// Adds to y the forces of the means' stiffness, the sum of kappa V b (b . x) over the elements; x and y [nodes].
 template <class Real, class Device, class Shape>
 void apply_means(const ElementList<Real, Device, Shape>& list, const MeanDilationView<Real>& means,
                  const NodeVector<Device>& x, NodeVector<Device>& y);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -12,16 +11,12 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/counts.hpp"
-#include "common/ensemble/member_table.hpp"
-#include "common/ensemble/slide_options.hpp"
 #include "common/stage/findings.hpp"
-#include "common/stage/interrupt.hpp"
 #include "common/stage/machine.hpp"
+#include "common/stage/signals.hpp"
 #include "solver/ensemble/in_flight.hpp"
-#include "solver/ensemble/keep_runs.hpp"
-#include "solver/ensemble/member_cost.hpp"
 #include "solver/ensemble/run_members.hpp"
-#include "solver/run/run_inputs.hpp"
+#include "solver/run/simulation.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
@@ -34,10 +29,10 @@ constexpr std::size_t most_said = 5;  ///< failures and warnings in the log; all
 struct Ensemble {
   EnsembleOptions options;
   EnsemblePaths paths;
-  MemberTable table;
-  MemberRange part;
-  std::string fingerprint;
-  std::filesystem::path counts;  ///< the result
+  MemberTable table = {};
+  MemberRange part = {};
+  std::string fingerprint = {};
+  std::filesystem::path counts = {};  ///< the result
   bool edge_fails = false;
 };
 
@@ -72,10 +67,6 @@ Ensemble read_ensemble(const StageContext& context, const EnsembleFlags& flags, 
                        const SolveOptions& base) {
   Ensemble e{.options = ensemble_of(context.recipe),
              .paths = {context.out},
-             .table = {},
-             .part = {},
-             .fingerprint = {},
-             .counts = {},
              .edge_fails = slides_of(context.recipe).at_edge == SlideAtEdge::fail};
   e.table = read_member_table(e.paths.members());
   judge_table(context, e, domain);
@@ -90,24 +81,18 @@ Ensemble read_ensemble(const StageContext& context, const EnsembleFlags& flags, 
 
 EnsembleCounts fresh_counts(const StageContext& context, const Ensemble& e, const Domain& domain,
                             const SolveOptions& base) {
-  EnsembleScene scene{.scene = context.recipe.scene_name(),
-                      .title = context.recipe.title(),
-                      .grid = domain.grid,
-                      .terrain = domain.terrain.values,
-                      .before = domain.before.values,
-                      .release_thickness = domain.release_thickness.values,
-                      .threshold = base.map_threshold};
-  if (e.table.slides)
-    scene = {.scene = scene.scene,
-             .title = scene.title,
-             .grid = e.table.slides->lattice,
-             .terrain = {},
-             .before = {},
-             .release_thickness = {},
-             .threshold = scene.threshold,
-             .tallied = Tallied::largest};
+  EnsembleScene scene;
+  scene.scene = context.recipe.scene_name();
+  scene.title = context.recipe.title();
+  scene.threshold = base.map_threshold;
+  scene.grid = e.table.slides ? e.table.slides->lattice : domain.grid;
+  if (!e.table.slides) {
+    scene.terrain = domain.terrain.values;
+    scene.before = domain.before.values;
+    scene.release_thickness = domain.release_thickness.values;
+  }
   const bool budget = e.options.is_budget();  // of which deposits are compared, and nothing is counted
-  if (budget) scene.tallied = Tallied::largest;
+  if (e.table.slides || budget) scene.tallied = Tallied::largest;
   EnsembleCounts counts = empty_counts(std::move(scene), e.table.count, e.part,
                                        budget ? ThresholdOptions{{}, {}, {}, {}, {}} : e.options.thresholds);
   counts.fingerprint = e.fingerprint;
@@ -181,9 +166,7 @@ void say_findings(const EnsembleCounts& counts, const MemberTable& table) {
 /// This function says which members failed; it throws NumericalError where they are too many.
 void judge_failures(const EnsembleCounts& counts, const Ensemble& e) {
   std::vector<MemberWords> failures = counts.failures;
-  std::erase_if(failures, [&](const MemberWords& one) {
-    return counts.states[static_cast<std::size_t>(one.member - e.part.first)] == MemberState::left_out;
-  });
+  std::erase_if(failures, [&](const MemberWords& one) { return counts.state_of(one.member) == MemberState::left_out; });
   for (std::size_t n = 0; n < failures.size() && n < most_said; ++n)
     warn("member-failed", fmt::format("{} failed: {}", e.table.name_of(failures[n].member), failures[n].words));
   const auto failed = static_cast<double>(failures.size());
@@ -207,8 +190,7 @@ void say_edges(const EnsembleCounts& counts, const MemberTable& table) {
                                 : "Take a larger part of the elevation model"));
 }
 
-/// This function runs the members of a part that wait, on these devices, and saves their counts now and then; see
-/// run_members().
+/// Runs the members of a part that wait, on these devices, and saves their counts now and then; see run_members().
 bool count_members(const Ensemble& e, const Members& members, const std::vector<AnyDevice>& devices,
                    EnsembleCounts& counts) {
   return run_members(members, counts,
@@ -252,11 +234,9 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
                    const SolveOptions& base) {
   const Findings found("solve");
   const Domain& domain = *base_domain;
-  const auto begun = std::chrono::steady_clock::now();
+  const RunTimer timer;
   const Ensemble e = read_ensemble(context, flags, domain, base);
-  const auto seconds = [&] {
-    return fmt::format("{:.3f}", std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
-  };
+  const auto seconds = [&] { return fmt::format("{:.3f}", timer.seconds()); };
   if (!flags.plan && !context.check_only && finished_of(e.counts, e)) {
     log_info(fmt::format("{}: it holds this very part already", e.counts.string()));
     context.results.push_back(e.counts);

@@ -8,9 +8,8 @@
 #include <string>
 
 #include "common/domain/domain.hpp"
-#include "common/ensemble/names.hpp"
+#include "common/ensemble/member_table.hpp"
 #include "common/ensemble/options.hpp"
-#include "common/stage/depends.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/options/solve.hpp"

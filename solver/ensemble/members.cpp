@@ -9,17 +9,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "common/domain/domain_facts.hpp"
-#include "common/domain/scale_release.hpp"
 #include "common/ensemble/options.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/plan/named_places.hpp"
-#include "solver/run/run_inputs.hpp"
+#include "solver/run/simulation.hpp"
 
 namespace talus::solver {
 namespace {
 
-/// Keys by which the stiffness and the steps are settled.
 constexpr const char* settling_keys[] = {"solve.material.stiffness",
                                          "solve.material.youngs_modulus_Pa",
                                          "solve.accuracy",
@@ -34,13 +31,8 @@ bool varies_settling(const MemberTable& table) {
 
 /// Whether a member's maps can be counted: on the grid of the base domain, of a slide on its window of the lattice.
 bool is_countable(const MapGrid& own, const MemberTable& table, std::int64_t member, const MapGrid& base) {
-  if (!table.slides)
-    return own.columns == base.columns && own.rows == base.rows && own.west == base.west && own.south == base.south &&
-           own.cell == base.cell;
-  const auto found = window_on(table.slides->lattice, own);
-  const CellWindow& w = table.slides->windows[static_cast<std::size_t>(member)];
-  return found && found->column == w.column && found->row == w.row && found->columns == w.columns &&
-         found->rows == w.rows;
+  if (!table.slides) return own.has_cells_of(base);
+  return window_on(table.slides->lattice, own) == table.slides->windows[static_cast<std::size_t>(member)];
 }
 
 SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
@@ -50,7 +42,6 @@ SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
   return options;
 }
 
-/// What the program settled for the base.
 SettledOnce settled_once(const Plan& base) {
   SettledOnce settled;
   const SolveOptions &asked = base.asked, &used = base.options;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,13 +11,11 @@
 #include "common/domain/domain.hpp"
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
-#include "common/ensemble/names.hpp"
 #include "common/recipe/recipe.hpp"
 #include "solver/ensemble/variations.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/plan/plan.hpp"
 #include "solver/plan/step_choice.hpp"
-#include "solver/plan/stiffness.hpp"
 
 namespace talus::solver {
 
@@ -37,13 +34,11 @@ class Members {
   Members(const recipe::Recipe& recipe, const MemberTable& table, const EnsemblePaths& paths,
           std::shared_ptr<const Domain> domain, const SolveOptions& base);
 
-  /// The method reads every member's options. It throws RecipeError with the first member that the recipe does not
-  /// allow.
+  /// Reads every member's options. It throws RecipeError with the first member that the recipe does not allow.
   void check() const;
   /// The plan of a member; it reads files. It throws as plan() does, and DataError: a domain of its own that could not
   /// be made, is missing, or is on another grid.
   std::shared_ptr<const Plan> plan(std::int64_t member) const;
-  /// The options of the base, settled as those of the members are.
   const SolveOptions& base() const { return base_; }
   /// Whether what is left to the program is settled for each member by itself.
   bool settles_each() const { return settles_each_; }

@@ -12,7 +12,6 @@
 #include <fmt/ranges.h>
 
 #include "common/domain/bed_numbers.hpp"
-#include "common/recipe/overrides.hpp"
 
 namespace talus::solver {
 namespace {
@@ -208,9 +207,7 @@ void Variations::integrator(Variation& one, bool) const {
   if (!is_explicit && base_.flow_integrator() != Integrator::column_implicit) return;
   const Integrator other = is_explicit ? Integrator::column_implicit : Integrator::explicit_;
   (base_.integrator == Integrator::automatic ? one.options.flow : one.options.integrator) = other;
-  if (!is_explicit) {
-    one.options.cfl = std::min(base_.cfl, default_cfl);  // longer ones need not be stable
-  }
+  if (!is_explicit) one.options.cfl = std::min(base_.cfl, default_cfl);  // longer ones need not be stable
   one.values.emplace_back(is_explicit ? "solve.integrator=column-implicit" : "solve.integrator=explicit");
   one.values.push_back(set_to("solve.cfl", one.options.cfl));
   one.words = is_explicit ? "inertia implicit along columns instead of explicit steps"

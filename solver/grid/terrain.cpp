@@ -21,22 +21,22 @@ NodeWeights node_weights(bool quadratic) {
   return {{0.0, 1.0, 0.0}, {-0.5, 0.0, 0.5}};  // mean of the slopes of the two cells
 }
 
-/// This function gives nodes without ground beside known ones the mean of those; only curves beyond the places where
-/// points may be look at them.
-void fill_rim(const GridShape& shape, std::vector<double>& terrain) {
+/// This function gives nodes that are not known beside known ones the mean value of those.
+template <class Known>
+void fill_beside(const GridShape& shape, const Known& known, std::vector<double>& values) {
   for (int j = 0; j < shape.rows; ++j) {
     for (int i = 0; i < shape.columns; ++i) {
-      if (std::isfinite(shape.terrain[shape.index(i, j)])) continue;
+      if (known(shape.index(i, j))) continue;
       double sum = 0;
       int count = 0;
       for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
         for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
-          if (!std::isfinite(shape.terrain[shape.index(a, b)])) continue;
-          sum += terrain[shape.index(a, b)];
+          if (!known(shape.index(a, b))) continue;
+          sum += values[shape.index(a, b)];
           ++count;
         }
       }
-      if (count > 0) terrain[shape.index(i, j)] = sum / count;
+      if (count > 0) values[shape.index(i, j)] = sum / count;
     }
   }
 }
@@ -64,48 +64,26 @@ void measure_slopes(const GridShape& shape, TerrainTables& tables) {
   }
 }
 
-/// A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbours
-/// do.
-void lean_edges(const GridShape& shape, TerrainTables& tables) {
-  const auto measured = tables.open;
-  for (int j = 0; j < shape.rows; ++j) {
-    for (int i = 0; i < shape.columns; ++i) {
-      if (measured[shape.index(i, j)]) continue;
-      int count = 0;
-      double sx = 0, sy = 0;
-      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, shape.rows - 1); ++b) {
-        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, shape.columns - 1); ++a) {
-          if (!measured[shape.index(a, b)]) continue;
-          sx += tables.slope_x[shape.index(a, b)];
-          sy += tables.slope_y[shape.index(a, b)];
-          ++count;
-        }
-      }
-      if (count > 0) {
-        tables.slope_x[shape.index(i, j)] = sx / count;
-        tables.slope_y[shape.index(i, j)] = sy / count;
-      }
-    }
-  }
-}
-
 }  // namespace
 
 TerrainTables make_terrain_tables(const GridShape& shape) {
   TerrainTables tables;
   tables.datum = std::numeric_limits<double>::infinity();
-  for (double z : shape.terrain) {
+  for (double z : shape.terrain)
     if (std::isfinite(z)) tables.datum = std::min(tables.datum, z);
-  }
   tables.terrain.assign(shape.terrain.size(), 0.0);
   tables.slope_x = tables.slope_y = tables.terrain;
   tables.open.assign(shape.terrain.size(), 0);
-  for (std::size_t n = 0; n < shape.terrain.size(); ++n) {
+  for (std::size_t n = 0; n < shape.terrain.size(); ++n)
     if (std::isfinite(shape.terrain[n])) tables.terrain[n] = shape.terrain[n] - tables.datum;
-  }
-  fill_rim(shape, tables.terrain);
+  // Only curves beyond the places where points may be look at nodes without ground.
+  fill_beside(
+      shape, [&](std::size_t n) { return std::isfinite(shape.terrain[n]); }, tables.terrain);
   measure_slopes(shape, tables);
-  lean_edges(shape, tables);
+  // A node beside the domain's edge, which stencils reach but where no slope can be measured, leans as its neighbours.
+  for (std::vector<double>* slope : {&tables.slope_x, &tables.slope_y})
+    fill_beside(
+        shape, [&](std::size_t n) { return tables.open[n] != 0; }, *slope);
   return tables;
 }
 

@@ -25,8 +25,7 @@ struct GridShape {
   }
 };
 
-/// The terrain as kernels use it, from a GridShape: coefficients, slopes at the nodes, where points may be; each
-/// [rows * columns].
+/// The terrain as kernels use it: coefficients, slopes at the nodes, where points may be; each [rows * columns].
 struct TerrainTables {
   double datum = 0;  ///< lowest elevation [m]; heights below are from here
   std::vector<double> terrain, slope_x, slope_y;
@@ -36,8 +35,7 @@ struct TerrainTables {
 /// The terrain of a grid: elevations at the nodes above the datum, the coefficients b_i of (T1), and the slopes there.
 TerrainTables make_terrain_tables(const GridShape& shape);
 
-/// The elevation of the terrain at (xi, eta), in cells from node (0, 0), as the grid's own functions interpolate it
-/// (T1) [m above datum].
+/// The elevation of the terrain at (xi, eta), in cells from node (0, 0), by the grid's functions (T1) [m above datum].
 double terrain_at(const GridShape& shape, const TerrainTables& tables, double xi, double eta);
 
 }  // namespace talus

@@ -6,8 +6,7 @@
 #pragma once
 
 #include "solver/boundary/surface_contact.hpp"
-#include "solver/implicit/node_arrays.hpp"
-#include "solver/transfer/point_gradients.hpp"
+#include "solver/implicit/node_fields.hpp"
 
 namespace talus::solver {
 
@@ -29,8 +28,7 @@ struct ContactNumbers {
 template <class Real>
 struct NodeMass {
   const double* data;
-  /// The mass of stored node n [kg].
-  TALUS_HD Real mass(int n) const { return static_cast<Real>(data[n]); }
+  TALUS_HD Real mass(int n) const { return static_cast<Real>(data[n]); }  ///< mass of stored node n [kg]
 };
 
 /// One thread: one contact point. It measures the mass before it, and the limit of friction that the step begins with.
@@ -58,8 +56,7 @@ struct MeasureGrip {
   }
 };
 
-/// The force (T12b) of contact point c for a displacement of the grid and, with `stiffness`, minus its derivative,
-/// friction's limit held.
+/// The force (T12b) of contact point c for a displacement of the grid; with `stiffness`, minus its derivative too.
 template <class Real>
 TALUS_HD Vec3<double> contact_force(const ContactView<Real>& contacts, const ContactNumbers& numbers, int c,
                                     const Vec3<double>& u, Sym3<double>* stiffness) {
@@ -123,8 +120,7 @@ struct ScatterContacts {
   }
 };
 
-/// One thread: one contact point. The limit of friction there follows the push for the displacement u, and the internal
-/// force follows the limit.
+/// One thread: one contact point. The limit of friction follows the push for the displacement u, the force the limit.
 template <class Real, class Shape>
 struct RenewLimits {
   GridView<Real> grid;
@@ -201,8 +197,7 @@ template <class Real>
 struct ArrivingNodes {
   NodeArrays nodes;
   double step;  ///< where the first guess of the displacement goes with the velocity [s]; else 0
-  /// The mass of stored node n [kg].
-  TALUS_HD Real mass(int n) const { return static_cast<Real>(nodes.mass[n]); }
+  TALUS_HD Real mass(int n) const { return static_cast<Real>(nodes.mass[n]); }  ///< mass of stored node n [kg]
   /// The velocity that node n begins the step with [m/s].
   TALUS_HD Vec3<Real> velocity(int n) const { return narrow<Real>(nodes.begin_velocity(n)); }
   /// The method adds a change of velocity [m/s] to node n, and to the first guess of its displacement.

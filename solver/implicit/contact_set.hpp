@@ -1,37 +1,53 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contacts of an implicit step: of the nodes with bed and walls, and of the contact points between nodes.
+// What the objects of an implicit step work on together, and its contacts: of the nodes with bed and walls, and of the
+// contact points between nodes.
 #pragma once
 
 #include <algorithm>
 
+#include "solver/grid/sparse_grid.hpp"
 #include "solver/implicit/contact_forces.hpp"
-#include "solver/implicit/friction_smoothing.hpp"
-#include "solver/implicit/node_fields.hpp"
+#include "solver/implicit/newton.hpp"
 #include "solver/implicit/prepare_nodes.hpp"
-#include "solver/implicit/residual.hpp"
-#include "solver/implicit/step_parts.hpp"
-#include "solver/integrator/device_bed.hpp"
+#include "solver/integrator/device_state.hpp"
 
 namespace talus::solver {
+
+/// The size of the cells and what they hold when they are full.
+struct CellMeasures {
+  double spacing, layer_height;  ///< [m]
+  double layer_mass;             ///< of a full layer over a square metre [kg/m2]
+  double full_base;              ///< mass of a base node under a full layer [kg]
+};
+
+/// The particles, the grid and what the mass can touch, which belong to the integrator, the settings of all
+/// integrators and the controls of implicit ones.
+template <class Real, class Device, class Shape>
+struct StepParts {
+  Device device;
+  const IntegratorSettings& settings;
+  const ImplicitControls& controls;
+  Particles<Real, Device>& points;
+  SparseGrid<Real, Device>& grid;
+  Materials<Real>& materials;
+  bool dilatant;  ///< plastic flow changes the volume
+  SurfaceContact<Real, Device, Shape>& surfaces;
+  ContactImpulses<Real, Device, Shape>& impulses;
+  SumSpace<Device>& sums;
+  CellMeasures cell;
+};
 
 /// The buffers of contacts over the stored nodes, sized together; see Constraints for what they hold.
 template <class Device>
 struct NodeContactFields {
-  explicit NodeContactFields(const Device& device)
-      : walls(device),
-        normal(device),
-        direction(device),
-        way(device),
-        friction(device),
-        traction(device),
-        limit(device),
-        changes(device) {}
+  explicit NodeContactFields(const Device& on) : device(on) {}
 
-  Buffer<Sym3<double>, Device> walls;
-  NodeVector<Device> normal, direction, way;
-  Buffer<double, Device> friction, traction, limit;
-  Buffer<ContactChanges, Device> changes;
+  Device device;
+  Buffer<Sym3<double>, Device> walls{device};
+  NodeVector<Device> normal{device}, direction{device}, way{device};
+  Buffer<double, Device> friction{device}, traction{device}, limit{device};
+  Buffer<ContactChanges, Device> changes{device};
 
   /// The method sets the number of nodes. `traction`, `way`: whether those are there.
   void resize(std::size_t nodes, bool has_traction, bool has_way) {
@@ -44,11 +60,7 @@ struct NodeContactFields {
     limit.resize(nodes);
     changes.resize(nodes);
   }
-  /// The size of the buffers [bytes].
-  std::size_t bytes() const {
-    return walls.bytes() + normal.bytes() + direction.bytes() + way.bytes() + friction.bytes() + traction.bytes() +
-           limit.bytes() + changes.bytes();
-  }
+  std::size_t bytes() const { return bytes_of(walls, normal, direction, way, friction, traction, limit, changes); }
 };
 
 /// The buffers of contacts over the contact points, sized together; see ContactNumbers for what they hold.
@@ -63,11 +75,9 @@ struct ContactPointFields {
   /// The method sets the number of contact points; their stiffness begins at zero.
   void resize(std::size_t points) {
     for (auto* b : {&spring, &coefficient, &limit}) b->resize(points);
-    stiffness.resize(points);
-    stiffness.fill_zero();
+    stiffness.resize_zeroed(points);
   }
-  /// The size of the buffers [bytes].
-  std::size_t bytes() const { return spring.bytes() + coefficient.bytes() + limit.bytes() + stiffness.bytes(); }
+  std::size_t bytes() const { return bytes_of(spring, coefficient, limit, stiffness); }
 };
 
 /// The nodes of an implicit step before its beginning, as drag of the bed sees them: mass [kg], momentum [kg m/s], and
@@ -77,8 +87,7 @@ struct MomentumNodes {
   const double* data;
   const Vec3<double>* momentum;
   Vec3<double>* arrival;
-  /// The mass of node n [kg].
-  TALUS_HD double mass(int n) const { return data[n]; }
+  TALUS_HD double mass(int n) const { return data[n]; }  ///< mass of node n [kg]
   /// The velocity of node n, which has mass [m/s].
   TALUS_HD Vec3<double> velocity(int n) const { return momentum[n] * (1 / data[n]); }
   /// The method adds a change of velocity [m/s] to node n.
@@ -145,15 +154,13 @@ class ContactSet {
     if (parts_.surfaces.on())
       each_point(RenewLimits<Real, Shape>{parts_.grid.view(), parts_.surfaces.view(), nodes(), numbers()});
   }
-  /// The method makes slips that u has turned back stick, there and where the line search set out; they count as
-  /// changes of `balance`.
+  /// Makes slips that u has turned back stick, there and where the line search set out; `balance` counts them.
   void stick_reversed(Balance* balance) {
     sum_each<1>(parts_.device, nodes_.count, parts_.sums, StickReversed{nodes(), constraints(), nodes_.saved_u.data()},
                 FinishReversals{balance});
   }
 
-  /// The method subtracts the forces (T12b) of the contact points from the internal force, and keeps their derivative
-  /// `with_stiffness`.
+  /// Subtracts the forces (T12b) of the contact points from the internal force; `with_stiffness` keeps the derivative.
   void scatter(bool with_stiffness) {
     if (parts_.surfaces.on())
       each_point(
@@ -183,12 +190,10 @@ class ContactSet {
                                            parts_.controls.dynamic ? parts_.impulses.impulses() : nullptr});
   }
 
-  /// The smoothing of friction, kept from step to step.
-  FrictionSmoothing& smoothing() { return smoothing_; }
+  FrictionSmoothing& smoothing() { return smoothing_; }  ///< smoothing of friction, kept from step to step
   /// The size of what the nodes' contacts take [bytes].
-  std::size_t node_bytes() const { return bed_.bytes() + traction_.bytes() + fields_.bytes() + stiffness_.bytes(); }
-  /// The size of what the contact points take [bytes].
-  std::size_t point_bytes() const { return points_.bytes(); }
+  std::size_t node_bytes() const { return bytes_of(bed_, traction_, fields_, stiffness_); }
+  std::size_t point_bytes() const { return points_.bytes(); }  ///< size of what the contact points take [bytes]
 
  private:
   NodeArrays nodes() { return nodes_.arrays(parts_.controls.dynamic); }
@@ -200,37 +205,16 @@ class ContactSet {
   /// The method measures the columns, and lets the bed's drag slow them as they begin a step (T13a). Yield and cohesion
   /// are left to the contacts, whose friction they join: what they hold does not creep.
   void meet_columns(const NewmarkScheme& scheme, const Vec3<double>& gravity) {
-    const MomentumNodes columns{nodes_.mass.data(), nodes_.velocity.data(), nodes_.arrival.data()};
-    const int count = parts_.grid.active_blocks() * block_columns;
-    for_each(parts_.device, count,
-             MeasureColumns<Real, MomentumNodes>{.grid = parts_.grid.view(),
-                                                 .active = parts_.grid.active_list(),
-                                                 .nodes = columns,
-                                                 .columns = traction_.columns(),
-                                                 .gravity = gravity,
-                                                 .step = scheme.step});
-    const ColumnStep step{nullptr, scheme.step, {gravity}};
-    if (traction_.measures()) {
-      for_each(parts_.device, count,
-               MeasureCoefficients<Real, MomentumNodes>{.grid = parts_.grid.view(),
-                                                        .active = parts_.grid.active_list(),
-                                                        .nodes = columns,
-                                                        .friction = bed_.view(),
-                                                        .mass = traction_.columns().mass,
-                                                        .coefficient = traction_.coefficients(),
-                                                        .step = step});
-    }
-    if (!scheme.dynamic || !bed_.view().has_drag()) return;
-    for_each_column_twice<block_columns>(
-        parts_.device, parts_.grid.active_blocks(),
-        SlowColumns<Real, MomentumNodes>{.grid = parts_.grid.view(),
-                                         .active = parts_.grid.active_list(),
-                                         .nodes = columns,
-                                         .friction = bed_.view(),
-                                         .columns = traction_.columns(),
-                                         .step = step,
-                                         .with_yield = false,
-                                         .density = {static_cast<double>(parts_.materials.list[0].density), nullptr}});
+    const StepColumns<Real, MomentumNodes> at{
+        .grid = parts_.grid.view(),
+        .active = parts_.grid.active_list(),
+        .blocks = parts_.grid.active_blocks(),
+        .nodes = {nodes_.mass.data(), nodes_.velocity.data(), nodes_.arrival.data()},
+        .step = {nullptr, scheme.step, {gravity}}};
+    traction_.measure(parts_.device, at, bed_.view(), gravity, scheme.step);
+    if (scheme.dynamic && bed_.view().has_drag())
+      traction_.slow(parts_.device, at, bed_.view(), false,
+                     {static_cast<double>(parts_.materials.list[0].density), nullptr});
   }
 
   /// The method measures friction of the contact points for this step, and what they take at once.

@@ -6,14 +6,9 @@
 
 #include <algorithm>
 
-#include "solver/implicit/controls.hpp"
 #include "solver/implicit/implicit_step.hpp"
-#include "solver/implicit/make_implicit_solver.hpp"
-#include "solver/implicit/step_length.hpp"
+#include "solver/integrator/make_solvers.hpp"
 #include "solver/integrator/point_solver.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/integrator/step_failure.hpp"
-#include "solver/parallel/any_device.hpp"
 
 namespace talus::solver {
 
@@ -75,7 +70,6 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     clock_.write(clock);
   }
 
-  /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
     step_.list_memory([&](const char* name, std::size_t bytes) {
@@ -136,8 +130,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     return clock.ground_acceleration();
   }
 
-  /// The method solves for the end of the next step and returns its length [s]; 0: it was given up. It throws
-  /// NumericalError where no halving helps.
+  /// Solves for the end of the next step; returns its length [s], 0: given up. Throws NumericalError: no halving helps.
   double solve_step(const Clock& clock, StepStats& stats) {
     const bool knows = clock.accelerated != 0, midway = clock.step > 0;
     double step = length_.next(remaining(clock));
@@ -209,11 +202,10 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
   StepLength length_;
 };
 
-/// This function makes a solver of one precision and kind of shape functions, on a device.
 template <class Real, class Shape>
-std::unique_ptr<Solver> make_implicit_solver(const Scene& scene, const IntegratorSettings& settings,
-                                             const ImplicitControls& controls, const AnyDevice& device,
-                                             const SolverState& state) {
+std::unique_ptr<Solver> ImplicitSolvers<Real, Shape>::make(const Scene& scene, const IntegratorSettings& settings,
+                                                           const ImplicitControls& controls, const AnyDevice& device,
+                                                           const SolverState& state) {
   return make_solver_on<ImplicitSolver, Real, Shape>(device, scene, settings, controls, state);
 }
 

@@ -7,11 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/implicit/accept_step.hpp"
-#include "solver/implicit/newton.hpp"
-#include "solver/implicit/record_columns.hpp"
-#include "solver/implicit/scatter_inertia.hpp"
 #include "solver/implicit/tangent_system.hpp"
+#include "solver/implicit/transfer.hpp"
 
 namespace talus::solver {
 
@@ -118,10 +115,8 @@ class ImplicitStep {
                             .saved = nodes_.saved_u.data()},
                 KeepTotals<1>{&balance_.data()->downhill});
   }
-  /// The method adds `share` of the change to u.
   void apply_change(double share) { axpby(share, nodes_.change, 1.0, nodes_.u); }
-  /// The method sets u to what it was at begin_search().
-  void return_to_start() { copy(nodes_.saved_u, nodes_.u); }
+  void return_to_start() { copy(nodes_.saved_u, nodes_.u); }  ///< sets u to what it was at begin_search()
   /// The method makes slipping contacts that u takes back stick.
   void stick_reversed() { contacts_.stick_reversed(balance_.data()); }
 
@@ -140,8 +135,7 @@ class ImplicitStep {
   /// The smoothing of friction, kept from step to step.
   FrictionSmoothing& smoothing() { return contacts_.smoothing(); }
 
-  /// The method takes the particles to the end of the step. `kept`: share of their velocity finer than the grid that
-  /// stays.
+  /// Takes the particles to the end of the step. `kept`: share of their velocity finer than the grid that stays.
   void accept(Clock* clock, double kept) {
     contacts_.keep(scheme_.step);
     for_each(parts_.device, nodes_.count,
@@ -218,8 +212,7 @@ class ImplicitStep {
     for_each(parts_.device, parts_.points.count(), kernel);
   }
 
-  /// The method remaps velocity (MUSL): the particles take their velocity first, and their strain from what it makes of
-  /// the nodes'.
+  /// Remaps velocity (MUSL): particles take their velocity first, and their strain from what it makes of the nodes'.
   template <class Laws>
   void remap_velocity(AcceptStep<Real, Shape, Laws>& kernel) {
     kernel.part = {.speeds = true, .deforms = false};

@@ -1,20 +1,203 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's method on the unbalanced force of a step, with an active set of contacts. It knows neither particles nor
-// grids nor devices: a problem is anything with the verbs of NewtonProblem.
+// grids nor devices: a problem is anything with the verbs of NewtonProblem. And the length of the
+// steps, by how its iterations get on.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 
-#include "solver/implicit/controls.hpp"
-#include "solver/implicit/friction_smoothing.hpp"
-#include "solver/implicit/line_search.hpp"
-#include "solver/implicit/linear_forcing.hpp"
-#include "solver/implicit/stall.hpp"
-#include "solver/linear/krylov/linear_report.hpp"
+#include "solver/integrator/settings.hpp"
+#include "solver/linear/krylov/conjugate_gradient.hpp"
 
 namespace talus::solver {
+
+/// The step to try: never over an event, never longer than asked for, and as long as attempts show to be worth it. It
+/// grows while Newton's iterations are few and shrinks when they are many; what failed is kept in mind, and tried again
+/// only after a while; the way of the farthest point, which may not exceed a limit, is foreseen from its last speed.
+class StepLength {
+ public:
+  /// The constructor takes the step that is asked for, `longest` [s], and how many Newton iterations a step may take.
+  StepLength(double longest, int most_iterations)
+      : longest_(longest), now_(longest), few_(std::max(1, most_iterations / 4)), many_(2 * most_iterations / 3) {}
+
+  /// The next step [s], `remaining` seconds before the next event: two even steps rather than a full one and a sliver.
+  double next(double remaining) const {
+    if (now_ >= remaining * (1 - 1e-9)) return remaining;
+    return remaining < 2 * now_ * (1 - 1e-9) ? 0.5 * remaining : now_;
+  }
+
+  /// Takes note of an accepted step [s], its Newton iterations, and the way of the farthest point over its limit.
+  void accept(double step, int iterations, double motion) {
+    const double factor = iterations <= few_ ? growth : iterations <= many_ ? 1 : shrinkage;
+    if (step > failed_) failed_ = none;  // what failed once no longer does
+    failed_ *= forgetting;
+    // The last step of a stretch may be shorter than the one that was planned, which then stays.
+    const double planned = std::max(step * factor, factor < 1 ? 0 : now_);
+    now_ = std::min({planned, longest_, below_failed * failed_, motion > 0 ? foreseen * step / motion : none});
+  }
+
+  /// The method returns what to try after a step that failed [s]: half of it; or, where it failed because the farthest
+  /// point went over its limit, `motion` times as far, what that suggests.
+  double refuse(double step, double motion) {
+    if (motion > 1) {
+      now_ = step * std::max(foreseen / motion, least_share);
+    } else {
+      failed_ = step;
+      now_ = 0.5 * step;
+    }
+    return now_;
+  }
+
+ private:
+  static constexpr double growth = 1.5, shrinkage = 0.7;
+  static constexpr double below_failed = 0.8;   ///< of a step that failed, where growth ends
+  static constexpr double forgetting = 1.0056;  ///< so that the same length is tried again after forty steps
+  static constexpr double foreseen = 0.8;       ///< of the way that the farthest point may go, for it may accelerate
+  static constexpr double least_share = 0.1;
+  static constexpr double none = std::numeric_limits<double>::infinity();
+  double longest_, now_;
+  int few_, many_;        ///< iterations up to which steps grow, and beyond which they shrink
+  double failed_ = none;  ///< the shortest step that failed of late [s]
+};
+
+/// The corner between stick and slip can send Newton's iterations round in circles. Where they do not converge,
+/// friction of the nodes that changed too often grows to its limit over a longer slip (T18), still a tenth at most of
+/// what gravity alone moves in a step, and over a shorter one again once they do.
+struct FrictionSmoothing {
+  static constexpr double narrowest = 1e-5, widest = 0.1;
+  static constexpr int patience = 4;  ///< iterations without progress before friction is smoothed further
+
+  bool smooths = true;       ///< statics keep the narrowest slip
+  double gravity_way = 0;    ///< the way that gravity alone makes in a step, or a share of a cell in statics [m]
+  double width = narrowest;  ///< share of gravity_way over which friction grows: what rests slips by no more than that
+
+  /// The slip over which friction grows to its limit (T18) [m].
+  double slip() const { return width * gravity_way; }
+  /// The slip that a node which starts to slip is taken to have made already [m].
+  double head_start() const { return 1e-3 * gravity_way; }
+
+  /// The method halves the width after a step of so many iterations, where they were few.
+  void narrow_after(int iterations) {
+    if (iterations <= 2 * patience) width = std::max(narrowest, 0.5 * width);
+  }
+  /// The method makes the width ten times as large; it returns false where it may not grow any more.
+  bool widen() {
+    if (!smooths || width >= widest) return false;
+    width = std::min(widest, 10 * width);
+    return true;
+  }
+  void narrow() { width = std::max(narrowest, 0.1 * width); }  ///< makes the width a tenth, within a step
+  /// Whether nothing has moved much further than the slip (`moved`, the farthest, in m): then the smoothing may let
+  /// slide what friction can hold.
+  bool too_wide_for(double moved) const {
+    constexpr double share = 0.1;
+    return smooths && width > narrowest && slip() > share * moved;
+  }
+};
+
+/// Which tangent comes with the forces: their derivative, or without the part that compression makes negative.
+enum class Linearisation { consistent, definite };
+/// Whether the states of contacts are kept as they are, or decided anew.
+enum class Contacts { kept, decided };
+
+/// The unbalanced force of a state.
+struct Unbalanced {
+  double force = 0;      ///< |r| [N]
+  double size = 1;       ///< what |r| is measured against [N]
+  double along = 0;      ///< r . change, while contacts are kept [N m]
+  double downhill = 0;   ///< |r . change| where the last search began [N m]
+  bool changed = false;  ///< contacts have changed their states
+};
+
+/// The verbs that a line search asks of a problem; see NewtonProblem.
+template <class P>
+concept SearchProblem = requires(P& p, double number) {
+  p.measure(Linearisation::consistent);
+  { p.residual(Contacts::kept) } -> std::same_as<Unbalanced>;
+  p.begin_search();
+  p.apply_change(number);
+  p.stick_reversed();
+  p.return_to_start();
+};
+
+/// The line search takes u += s change with the largest s = 1, 1/2, 1/4 ... after which less force is unbalanced than
+/// `before`, or less of it along the change: a sheet that must turn passes through larger forces on its way, but
+/// downhill in energy. It leaves the tangent there too: the first share is nearly always taken, and the next iteration
+/// begins with it. It returns false, and leaves u as it was, where no share down to 1/512 does, or where gives_up()
+/// says so before. `size`: of the forces [N].
+template <SearchProblem Problem, class GivesUp>
+bool line_search(Problem& problem, double before, double size, const GivesUp& gives_up) {
+  problem.begin_search();
+  double share = 1;
+  for (int halving = 0; halving < 10 && !gives_up(); ++halving) {
+    problem.apply_change(share);
+    problem.stick_reversed();
+    problem.measure(Linearisation::consistent);
+    const Unbalanced trial = problem.residual(Contacts::kept);
+    const double after = trial.force, along = std::abs(trial.along);
+    if (std::isfinite(after) && (after < before * (1 - 1e-4 * share) || along < 0.8 * trial.downhill)) return true;
+    if (trial.changed && after < 2 * before) return true;  // another active set: Newton goes on with that
+    // The change that must be made at the end of convergence is rounding: take it.
+    if (halving == 0 && after <= 1e-11 * size) return true;
+    problem.return_to_start();
+    share *= 0.5;
+  }
+  return false;
+}
+/// The same to its end.
+template <SearchProblem Problem>
+bool line_search(Problem& problem, double before, double size) {
+  return line_search(problem, before, size, [] { return false; });
+}
+
+/// The tolerance of the next linear system: as Newton's last iteration got on (Eisenstat & Walker 1996, choice 2, with
+/// their safeguard), and no finer than Newton's own tolerance asks for.
+struct LinearForcing {
+  double last_residual = 0, last = 0.1;
+
+  /// The relative residual [-] to solve the next system to, where the unbalanced force over its size is `residual`.
+  double next(double residual, const ImplicitControls& controls) {
+    constexpr double gamma = 0.9, most = 0.1, first = 1e-3;  // a nearly linear step should be done in two
+    if (controls.forcing == Forcing::fixed) return controls.linear_tolerance;
+    double tolerance = first;
+    if (last_residual > 0) {
+      tolerance = gamma * (residual / last_residual) * (residual / last_residual);
+      if (gamma * last * last > 0.1) tolerance = std::max(tolerance, gamma * last * last);
+    }
+    last_residual = residual;
+    last = std::clamp(tolerance, 1e-12, most);
+    return std::max(controls.linear_tolerance, std::min(most, std::max(last, 0.1 * controls.tolerance / residual)));
+  }
+};
+
+/// The watch over the iterations of a step. What has an equilibrium comes nearer to it, if slowly: near the limit of
+/// its strength the unbalanced force stays for some thirty iterations, until the yielding points are found, and then
+/// falls. What fails keeps an unbalanced force of some size however far the iterations let it go. So a step is given
+/// up where the residual has not halved in more iterations than that.
+class Stall {
+ public:
+  /// The constructor takes how many iterations may pass without a halving; 0: as many as may be made.
+  explicit Stall(int patience) : patience_(patience) {}
+
+  /// The method takes note of an iteration's residual [-]; it returns true where the step is to be given up.
+  bool gives_up(double residual) {
+    if (patience_ == 0) return false;
+    if (residual < 0.5 * halved_) {
+      halved_ = residual;
+      waited_ = 0;
+      return false;
+    }
+    return ++waited_ >= patience_;
+  }
+
+ private:
+  int patience_, waited_ = 0;
+  double halved_ = std::numeric_limits<double>::infinity();  ///< the residual that the next one is measured against
+};
 
 /// How far the farthest point moves in a step.
 struct Motion {
@@ -39,7 +222,6 @@ concept NewtonProblem = SearchProblem<P> && requires(P& p, double number) {
   { p.smoothing() } -> std::same_as<FrictionSmoothing&>;
 };
 
-/// The outcome of Newton's method.
 struct NewtonReport {
   bool converged = false;
   int iterations = 0;
@@ -63,9 +245,8 @@ Unbalanced settle_contacts(Problem& problem) {
   return after;
 }
 
-/// This function solves for the change of u. Compression makes the tangent of a sparsely filled cell indefinite;
-/// without that part it is one of a convex energy, slower but sure to lead downhill. It returns false where no solve
-/// converged.
+/// Solves for the change of u. Compression makes the tangent of a sparsely filled cell indefinite; without that part it
+/// is one of a convex energy, slower but sure to lead downhill. It returns false where no solve converged.
 template <NewtonProblem Problem>
 bool find_change(Problem& problem, double tolerance, NewtonReport& report) {
   LinearReport linear = problem.solve(tolerance);
@@ -83,8 +264,7 @@ bool find_change(Problem& problem, double tolerance, NewtonReport& report) {
 /// Whether iterations have halved the unbalanced force of late.
 class Progress {
  public:
-  /// The method takes note of an iteration's residual; it returns true where `patience` iterations have not halved the
-  /// least so far.
+  /// Takes note of an iteration's residual; true where `patience` iterations have not halved the least so far.
   bool stalls(double residual, int patience) {
     waited_ = residual < 0.5 * best_ ? 0 : waited_ + 1;
     if (residual < best_) best_ = residual;

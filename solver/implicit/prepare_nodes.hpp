@@ -5,14 +5,11 @@
 
 #include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/walls.hpp"
-#include "solver/implicit/constraints.hpp"
-#include "solver/implicit/newmark.hpp"
-#include "solver/state/grid_view.hpp"
+#include "solver/implicit/residual.hpp"
 
 namespace talus::solver {
 
-/// One thread: one column of nodes. It makes their velocities from momenta, loads, constraints and the first guess of
-/// the displacement.
+/// One thread: one column of nodes. Makes velocities from momenta, loads and constraints; first guess of displacement.
 template <class Real>
 struct PrepareNodes {
   GridView<Real> grid;
@@ -76,7 +73,6 @@ struct PrepareNodes {
     nodes.u[n] = to.u;
   }
 
-  /// The place of a node in the grid.
   struct Place {
     int i, j, k;
   };
@@ -88,8 +84,7 @@ struct PrepareNodes {
     double friction = 0;
   };
 
-  /// The state that a contact begins with: a node that its own weight's friction can stop within the step is taken to
-  /// stick.
+  /// The state that a contact begins with: a node that the friction of its weight can stop within the step sticks.
   TALUS_HD Touch begin_contact(int n, const Vec3<double>& normal, double friction, const Sym3<double>& freed) const {
     if (!held.grips(n)) return Touch::slips;
     if (!scheme.dynamic) return Touch::sticks;

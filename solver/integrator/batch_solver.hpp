@@ -9,20 +9,34 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/integrator/at_home.hpp"
+#include "solver/integrator/column_boundary.hpp"
 #include "solver/integrator/column_contact.hpp"
-#include "solver/integrator/ends_of_steps.hpp"
 #include "solver/integrator/point_solver.hpp"
-#include "solver/integrator/remap_columns.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/integrator/sort_intervals.hpp"
-#include "solver/parallel/algorithms.hpp"
-#include "solver/parallel/columns.hpp"
-#include "solver/parallel/recording.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
 #include "solver/transfer/particle_to_grid.hpp"
 
 namespace talus::solver {
+
+/// The steps between sorts on a GPU: order within cells gains it little, and sorting takes as long as ten steps.
+inline constexpr int gpu_steps_between_sorts = 256;
+/// The steps between sorts where many points keep a GPU busy: what lies apart costs more than sorting then.
+inline constexpr int busy_gpu_steps_between_sorts = 32;
+/// The steps between sorts on a GPU for a number of points: `busy_gpu_steps_between_sorts` where many points have wide
+/// stencils.
+template <class Shape>
+int steps_between_sorts_on_gpu(int points) {
+  return Shape::width > 2 && points >= points_that_keep_a_gpu_busy ? busy_gpu_steps_between_sorts
+                                                                   : gpu_steps_between_sorts;
+}
+/// The steps between sorts on a CPU: in places of memory that lie apart, steps become slower.
+inline constexpr int cpu_steps_between_sorts = 32;
+/// The way that points may go before they are sorted: a sort takes as long as a dozen steps of a small scene, and more
+/// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one.
+template <class Device>
+Drift drift_between_sorts(bool deterministic) {
+  if (!Device::is_gpu || deterministic) return {};
+  return {.columns = 6, .layers = 3};
+}
 
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
@@ -96,7 +110,6 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     return now;
   }
 
-  /// The method adds points; see Solver::add().
   void add(const ParticleState& points, double rate) override {
     points_.append(points);
     Clock clock = clock_.read();
@@ -106,7 +119,6 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     clock_.write(clock);
   }
 
-  /// The memory by its users; see Solver::memory().
   MemoryShares memory() const override {
     MemoryShares shares = Base::memory();
     shares.emplace_back("nodes", node_bytes());
@@ -117,8 +129,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
  protected:
   /// The method gives storage to so many nodes beside their mass and momentum.
   virtual void resize_nodes(std::size_t count) = 0;
-  /// The method scatters the points and updates the nodes.
-  virtual void move_nodes() = 0;
+  virtual void move_nodes() = 0;  ///< scatters the points and updates the nodes
   /// The memory of the nodes [bytes].
   virtual std::size_t node_bytes() const { return nodes_.bytes() + forces_.bytes(); }
 
@@ -216,8 +227,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     return cpu_steps_between_sorts;
   }
 
-  /// The method records the maps of speed and pressure where the clock has halted at an event, or at once where it is
-  /// null.
+  /// Records the maps of speed and pressure where the clock has halted at an event, or at once where it is null.
   void look_back(const Clock* clock) {
     this->measure_columns();
     this->sum_motion(clock);

@@ -1,19 +1,105 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bed contact, walls, losses and maps of a column of nodes, for the nodes' kernels of explicit and column-implicit
-// steps.
+// What the nodes' kernels of explicit and column-implicit steps share: damping, bed contact, walls, losses (T24) and
+// maps of a column of nodes, and the second mapping of MUSL.
 #pragma once
 
-#include "solver/boundary/bed_beside_walls.hpp"
+#include <type_traits>
+
 #include "solver/boundary/column_traction.hpp"
-#include "solver/boundary/ground_turn.hpp"
-#include "solver/integrator/node_step.hpp"
-#include "solver/state/clock.hpp"
-#include "solver/state/gravity.hpp"
-#include "solver/state/grid_view.hpp"
-#include "solver/state/map_view.hpp"
+#include "solver/boundary/walls.hpp"
 
 namespace talus {
+
+/// The force that is left of one after local non-viscous damping (Cundall 1987): in every component a share of the
+/// unbalanced force acts against the velocity. Only the signs of `velocity` count.
+template <class Real>
+TALUS_HD Vec3<Real> damped(const Vec3<Real>& force, const Vec3<Real>& velocity, Real share) {
+  const auto left = [&](Real pull, Real v) -> Real {
+    if (v == Real(0)) return pull;
+    return Real(pull - share * (v > Real(0) ? fabs(pull) : -fabs(pull)));
+  };
+  return {left(force.x, velocity.x), left(force.y, velocity.y), left(force.z, velocity.z)};
+}
+
+/// What damping took from a force, of what is left of it: force less damped(force).
+template <class Real>
+TALUS_HD Vec3<Real> taken_by_damping(const Vec3<Real>& left, const Vec3<Real>& velocity, Real share) {
+  const auto taken = [&](Real pull, Real v) -> Real {
+    if (v == Real(0)) return Real(0);
+    const Real against = v > Real(0) ? share : -share;
+    return Real(against * fabs(pull) / (Real(1) - (pull > Real(0) ? against : -against)));
+  };
+  return {taken(left.x, velocity.x), taken(left.y, velocity.y), taken(left.z, velocity.z)};
+}
+
+/// What bed and walls gave a node in a step [N s].
+template <class Real>
+struct GivenImpulses {
+  Vec3<Real> bed, walls;
+};
+
+/// The losses of kinetic energy (T24) over a column [J]; what the points give to the grid and get back counts with
+/// signs. `contact` is what bed and walls take, friction along the bed a part of it. And what the bed gave along its
+/// normal, and bed and walls in all [N s].
+struct ColumnLosses {
+  static constexpr bool counted = true;
+  double contact = 0, friction = 0, pressed = 0, damping = 0, transfer = 0, shaking = 0, reaction[3] = {0, 0, 0};
+
+  TALUS_HD void operator+=(const ColumnLosses& o) {
+    contact += o.contact;
+    friction += o.friction;
+    pressed += o.pressed;
+    damping += o.damping;
+    transfer += o.transfer;
+    shaking += o.shaking;
+    for (int a = 0; a < 3; ++a) reaction[a] += o.reaction[a];
+  }
+
+  /// The method adds what bed and walls took from a node of this mean velocity [m/s] over ground of this normal. Forces
+  /// and impulses of a step act together, on the mean of its velocities: what rests loses nothing.
+  template <class Real>
+  TALUS_HD void take(const GivenImpulses<Real>& given, const Vec3<Real>& mean, const Vec3<Real>& normal) {
+    const Vec3<Real> all = given.bed + given.walls;
+    const Real pressing = dot(given.bed, normal);
+    contact -= static_cast<double>(dot(all, mean));
+    reaction[0] += static_cast<double>(all.x);
+    reaction[1] += static_cast<double>(all.y);
+    reaction[2] += static_cast<double>(all.z);
+    pressed += static_cast<double>(pressing);
+    friction -= static_cast<double>(dot(given.bed - normal * pressing, mean));
+  }
+
+  /// The method adds what the points gave to a node of this mass, by its velocities before and after the step.
+  template <class Real>
+  TALUS_HD void pass_on(Real mass, const Vec3<Real>& before, const Vec3<Real>& after) {
+    transfer += static_cast<double>(mass) * static_cast<double>(dot(after - before, (before + after) * Real(0.5)));
+  }
+
+  /// The method adds the work that the shaking of the ground does on a node of this mass and mean velocity [m/s].
+  template <class Real>
+  TALUS_HD void add_shaking(Real mass, const Vec3<Real>& mean, const Clock& clock) {
+    shaking -= static_cast<double>(mass) * clock.step_size * dot(clock.ground_acceleration(), widen(mean));
+  }
+
+  TALUS_HD void add_to(Clock& clock) const {
+    atomic_add(&clock.budget.bed_loss, contact);
+    atomic_add(&clock.budget.friction_loss, friction);
+    atomic_add(&clock.budget.damping_loss, damping);
+    atomic_add(&clock.budget.transfer_loss, transfer);
+    atomic_add(&clock.budget.shaking_work, shaking);
+    for (int a = 0; a < 3; ++a) atomic_add(&clock.budget.reaction[a], reaction[a]);
+  }
+};
+
+/// No losses, where none are counted.
+struct NoLosses {
+  static constexpr bool counted = false;
+  TALUS_HD void operator+=(const NoLosses&) {}
+};
+/// The losses of a kernel that counts them or does not.
+template <bool counts>
+using LossesIf = std::conditional_t<counts, ColumnLosses, NoLosses>;
 
 /// A column of nodes in a step; see WholeColumn for `inside`, `first` and `last`.
 template <class Real>
@@ -33,8 +119,7 @@ struct NodeVelocities {
   Vec3<Real> met;     ///< after contact with the bed
   Vec3<Real> after;   ///< after contact with the walls as well
 
-  /// The mean over the step.
-  TALUS_HD Vec3<Real> mean() const { return (before + after) * Real(0.5); }
+  TALUS_HD Vec3<Real> mean() const { return (before + after) * Real(0.5); }  ///< mean over the step
 };
 
 /// The inertia of a node that moves individually.
@@ -43,8 +128,7 @@ struct NodeMass {
   Real mass;  ///< [kg]
   /// The change of velocity across the bed by an impulse.
   TALUS_HD Real change(Real impulse) const { return impulse / mass; }
-  /// Tangential over normal mobility [-].
-  TALUS_HD static Real mobility_ratio() { return Real(1); }
+  TALUS_HD static Real mobility_ratio() { return Real(1); }  ///< tangential over normal mobility [-]
 };
 
 /// The surroundings of the columns in a step: gravity, walls, bed, and the maps and sums that a step updates.
@@ -117,6 +201,33 @@ struct ColumnBoundary {
         friction, at.column, beside, sx, sy,
         {.duration = at.dt, .grip = inertia.change(area * at.dt), .leverage = inertia.mobility_ratio(), .turn = turn});
   }
+};
+
+/// Momentum of the points' new velocities becomes velocity, without forces; a kernel of for_each_column. The boundary
+/// has no friction, no columns and no maps: bed and walls only prevent penetration.
+template <class Real>
+struct RemapColumns {
+  ColumnBoundary<Real> boundary;
+  Vec4<Real>* nodes;
+
+  /// The memory that the kernel moves [bytes].
+  double bytes(int) const { return boundary.grid.nodes * static_cast<double>(2 * sizeof(*nodes)); }
+
+  using Column = SteppedColumn<Real>;
+  struct Sums {
+    TALUS_HD Sums& operator+=(const Sums&) { return *this; }
+  };
+  TALUS_HD Column locate(int c) const { return boundary.locate(c); }
+  TALUS_HD void layer(const Column& at, int k, Sums&) const {
+    const int n = at.node(k);
+    const Vec4<Real> node = nodes[n];
+    if (!(node.w > Real(0))) return;
+    NodeVelocities<Real> v;
+    v.before = v.free = {node.x / node.w, node.y / node.w, node.z / node.w};
+    boundary.meet(at, k, node.w, NodeMass<Real>{node.w}, v, false);
+    nodes[n] = {node.w, v.after.x, v.after.y, v.after.z};
+  }
+  TALUS_HD void finish(const Column&, const Sums&) const {}
 };
 
 }  // namespace talus

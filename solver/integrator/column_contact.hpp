@@ -7,25 +7,15 @@
 #include "solver/boundary/bed_hold.hpp"
 #include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/contact_impulses.hpp"
-#include "solver/grid/terrain.hpp"
 #include "solver/integrator/settings.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/parallel/for_each.hpp"
-#include "solver/parallel/profile.hpp"
 
 namespace talus::solver {
 
-/// The nodes of a step, column by column.
+/// The nodes of a step with a clock, and the changes of their velocity where the step keeps them.
 template <class Real>
-struct StepNodes {
-  GridView<Real> grid;
-  const int* active;        ///< the blocks in use
-  int blocks;               ///< their number
-  PackedNodes<Real> nodes;  ///< with the changes of their velocity, where the step keeps them
-  ColumnStep step;          ///< with a clock
-};
+using StepNodes = StepColumns<Real, PackedNodes<Real>>;
 
-/// The contact of whole columns with the bed, on a device.
 template <class Real, class Device>
 class ColumnContact {
  public:
@@ -50,31 +40,16 @@ class ColumnContact {
   /// The method measures the coefficients of friction of a law that asks for the column, as a step begins.
   void measure(const StepNodes<Real>& at, const BaseFriction<Real>& bed) {
     if (!traction_.measures()) return;
-    using Nodes = PackedMomenta<Real>;
     const ProfilePhase<Device> phase(device_, "grid");
-    const Nodes nodes{at.nodes.nodes};
-    for_each(device_, columns(at),
-             MeasureColumns<Real, Nodes>{.grid = at.grid,
-                                         .active = at.active,
-                                         .nodes = nodes,
-                                         .columns = traction_.columns(),
-                                         .gravity = {},
-                                         .step = 0});
-    for_each(device_, columns(at),
-             MeasureCoefficients<Real, Nodes>{.grid = at.grid,
-                                              .active = at.active,
-                                              .nodes = nodes,
-                                              .friction = bed,
-                                              .mass = traction_.columns().mass,
-                                              .coefficient = traction_.coefficients(),
-                                              .step = at.step});
+    traction_.measure(
+        device_, StepColumns<Real, PackedMomenta<Real>>{at.grid, at.active, at.blocks, {at.nodes.nodes}, at.step}, bed);
   }
 
   /// The method adds what columns have lost by landing to the budget (T24a), once their nodes have met the bed.
   void count_landing(const StepNodes<Real>& at) {
     using Nodes = PackedNodes<Real>;
     const ProfilePhase<Device> phase(device_, "grid");
-    for_each(device_, columns(at),
+    for_each(device_, at.count(),
              CountLanding<Real, Nodes>{.grid = at.grid,
                                        .active = at.active,
                                        .nodes = {at.nodes.nodes, nullptr},
@@ -89,9 +64,9 @@ class ColumnContact {
     using Nodes = PackedNodes<Real>;
     const ProfilePhase<Device> phase(device_, "grid");
     if (first && hold_.measures())
-      for_each(device_, columns(at),
+      for_each(device_, at.count(),
                MeasureLying<Real, Nodes>{at.grid, at.active, at.step.clock, at.nodes, hold_.lying()});
-    for_each(device_, columns(at),
+    for_each(device_, at.count(),
              HoldColumns<Real, Nodes>{.grid = at.grid,
                                       .active = at.active,
                                       .clock = at.step.clock,
@@ -103,20 +78,9 @@ class ColumnContact {
 
   /// The method lets drag and cohesion of the bed slow what lies on it (T13a).
   void slow(const StepNodes<Real>& at, const BaseFriction<Real>& bed, const ColumnDensity<Real>& density) {
-    if (!traction_.acts()) return;
-    using Nodes = PackedNodes<Real>;
-    for_each_column_twice<block_columns>(device_, at.blocks,
-                                         SlowColumns<Real, Nodes>{.grid = at.grid,
-                                                                  .active = at.active,
-                                                                  .nodes = at.nodes,
-                                                                  .friction = bed,
-                                                                  .columns = traction_.columns(),
-                                                                  .step = at.step,
-                                                                  .with_yield = true,
-                                                                  .density = density});
+    if (traction_.acts()) traction_.slow(device_, at, bed, true, density);
   }
 
-  /// The method adds the memory of its arrays to a list.
   void list_memory(MemoryShares& shares) const {
     if (traction_.bytes() > 0) shares.emplace_back("bed's tractions", traction_.bytes());
     if (const std::size_t held = hold_.bytes() + pressed_.bytes(); held > 0)
@@ -124,8 +88,6 @@ class ColumnContact {
   }
 
  private:
-  static int columns(const StepNodes<Real>& at) { return at.blocks * block_columns; }
-
   Device device_;
   ColumnTraction<Real, Device> traction_;
   BedHold<Real, Device> hold_;

@@ -6,19 +6,8 @@
 #include <memory>
 
 #include "solver/grid/sparse_grid.hpp"
-#include "solver/integrator/device_clock.hpp"
-#include "solver/integrator/device_loads.hpp"
-#include "solver/integrator/device_maps.hpp"
-#include "solver/integrator/motion_maps.hpp"
+#include "solver/integrator/device_state.hpp"
 #include "solver/integrator/particle_measures.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/integrator/settings.hpp"
-#include "solver/integrator/shaking.hpp"
-#include "solver/integrator/solver.hpp"
-#include "solver/integrator/surroundings.hpp"
-#include "solver/parallel/algorithms.hpp"
-#include "solver/parallel/any_device.hpp"
-#include "solver/parallel/atomics.hpp"
 #include "solver/parallel/recording.hpp"
 
 namespace talus::solver {
@@ -57,10 +46,8 @@ class PointSolver : public Solver {
     clock_.write(clock);
   }
 
-  /// The clock of the end of the last step; waits for the device.
   Clock clock() const override { return clock_.read(); }
 
-  /// All that a checkpoint keeps; waits for the device.
   SolverState state() const override {
     return {.points = points_.download(),
             .clock = clock_.read(),
@@ -68,30 +55,23 @@ class PointSolver : public Solver {
             .contacts = surroundings_.contact().state()};
   }
 
-  /// The points as frames show them; waits for the device.
   ParticleState shown() const override { return points_.download(Kept::in_frames); }
 
-  /// The sums over the points; waits for the device.
   Energies energies() override {
     if (!measured_) measuring_.repeat(1, [&] { start_measures(); });
     measured_ = Device::is_gpu;
     return measures_.energies();
   }
 
-  /// How densely the points are packed; waits for the device.
   Packing packing() override {
     if (!measured_) measures_.start_packing(points_.view(), grid_);
     return measures_.packing();
   }
 
-  /// The vertical thickness, h of (T25), [rows * columns] [m]; waits for the device.
   std::vector<double> thickness() override { return measures_.thickness(points_.view(), grid_.groups()); }
 
-  /// The impulse that every obstacle was given so far, along x, y and z [N s].
   std::vector<Vec3<double>> obstacle_impulses() const override { return surroundings_.contact().obstacle_impulses(); }
-  /// The terrain as kernels use it.
   const TerrainTables& ground() const override { return grid_.ground(); }
-  /// The number of points in the domain.
   int particle_count() const override { return points_.count(); }
   /// The memory taken by points, grid, maps and what else there is [bytes].
   MemoryShares memory() const override {
@@ -104,8 +84,7 @@ class PointSolver : public Solver {
   }
 
  protected:
-  /// The method measures the volumes over the columns for the maps, where densities differ and mass does not give the
-  /// thickness.
+  /// Measures the volumes over the columns for the maps, where densities differ and mass does not give the thickness.
   void measure_columns() {
     if (settings_.materials.densities_differ) measures_.measure_columns(points_.view(), grid_.groups());
   }
@@ -118,8 +97,7 @@ class PointSolver : public Solver {
   /// The method records the maps of speed and pressure from the motion that was summed up.
   void record_motion() { motion_.record(grid_, column_density(), maps_.view()); }
 
-  /// The method starts to measure what a record asks for: the energies, and where that is no work of the host's the
-  /// packing too.
+  /// Starts to measure what a record asks for: the energies, and where that is no work of the host's the packing too.
   void start_measures() {
     measures_.start_energies(points_.count(),
                              {grid_.view(), points_.view(), materials_, settings_.gravity_vector(), dilatant_});
@@ -148,7 +126,6 @@ class PointSolver : public Solver {
     clock.alarms.halt = clock.alarms.request = running;
   }
 
-  /// The clock that a run goes on with from a state.
   static Clock clock_of(const SolverState& state, const IntegratorSettings& settings) {
     Clock clock = state.clock;
     clock.subgrid.decay_time = settings.decay_time;

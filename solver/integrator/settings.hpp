@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What integrators and their kernels see of a recipe: groups of its options as they are, and what follows from the
-// others (coefficients instead of angles, presets resolved). scene/settings.hpp makes that of the options, once.
+// What integrators and their kernels see of a recipe, all of them and implicit ones: groups of its options as they are,
+// and what follows from the others (coefficients instead of angles, presets resolved). scene/settings.hpp makes that of
+// the options, once.
 #pragma once
 
 #include <type_traits>
 #include <vector>
 
-#include "solver/boundary/base_friction.hpp"
-#include "solver/boundary/plane_walls.hpp"
-#include "solver/boundary/separation.hpp"
+#include "solver/boundary/walls.hpp"
 #include "solver/material/material.hpp"
+#include "solver/options/implicit.hpp"
 #include "solver/options/loads.hpp"
 #include "solver/options/output.hpp"
 #include "solver/options/scheme.hpp"
@@ -24,7 +24,6 @@ struct MaterialSettings {
   Materials<float> in_single;
   bool densities_differ = false;
 
-  /// The materials in the precision `Real`.
   template <class Real>
   const Materials<Real>& in() const {
     if constexpr (std::is_same_v<Real, double>) {
@@ -46,6 +45,19 @@ struct IntegratorSettings : SchemeOptions, GravityOptions, OutputOptions {
   SeparationSettings separation = {};
   std::vector<PlaneWall> walls = {};
   std::vector<LoadOptions> loads = {};
+};
+
+/// How implicit steps are taken.
+struct ImplicitControls : ImplicitOptions, NewtonScheme {
+  bool dynamic = true;  ///< with inertia (Newmark); else a sequence of equilibria
+  /// It is asked between iterations, of linear systems too, whether the step is given up; null: never.
+  bool (*give_up)() = nullptr;
+  int patience = 0;  ///< iterations without a halving after which a step is given up; 0: all of them
+
+  /// Whether the step is given up: its iterations end as they are, and nothing of it is kept.
+  bool gives_up() const { return give_up && give_up(); }
+  /// Whether a step is one linear solve with the tangent at its start.
+  bool once() const { return newton_iterations == 1; }
 };
 
 }  // namespace talus::solver

@@ -3,7 +3,6 @@
 // The integrators behind one interface, for both devices and both precisions.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,8 +10,6 @@
 #include "common/run/map_fields.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/integrator/scene.hpp"
-#include "solver/state/clock.hpp"
-#include "solver/state/contact_state.hpp"
 
 namespace talus::solver {
 
@@ -43,7 +40,10 @@ struct SolverState {
   ContactState contacts;
 };
 
-/// The effort of an implicit step.
+/// The points of a state that has homes, each in its home cell and the octant of it that its key names: a sort leaves
+/// them in their order, with the same keys. `columns`: of the grid.
+ParticleState at_home(const SolverState& state, int columns);
+
 struct StepStats {
   int newton = 0, linear = 0, cuts = 0;  ///< iterations; halvings of the step
   double residual = 0,
@@ -52,7 +52,6 @@ struct StepStats {
   bool indefinite = false;
 };
 
-/// The outcome of a batch of steps.
 struct BatchReport {
   Clock clock;
   bool sorted = false;        ///< the points have just been sorted
@@ -64,45 +63,40 @@ struct BatchReport {
 
 using MemoryShares = std::vector<std::pair<std::string, std::size_t>>;
 
-/// An integrator with its state, whatever its precision and device. Methods wait for the device where they return
-/// state.
+/// An integrator with its state, of any precision and device. Methods wait for the device where they return state.
 class Solver {
  public:
   virtual ~Solver() = default;
   /// The method steps until the next event, the next sort or a failure, at most a batch.
   virtual BatchReport advance() = 0;
-  /// The method sets the time not to step over [s].
-  virtual void set_next_event(double time) = 0;
+  virtual void set_next_event(double time) = 0;  ///< sets the time not to step over [s]
   /// The method adds points; at the start or at an event, where those who left the domain have been dropped. `rate`:
   /// at which waves and speed cross the cells of those points [1/s], which bounds the next step (T11).
   virtual void add(const ParticleState& points, double rate) = 0;
-  /// The clock of the end of the last step.
-  virtual Clock clock() const = 0;
+  virtual Clock clock() const = 0;  ///< clock of the end of the last step
   /// All that a checkpoint keeps; what a run may go on from where BatchReport::can_be_saved.
   virtual SolverState state() const = 0;
   /// The points as frames show them: without affine velocity, acceleration, boxes and loads, whose lists are empty.
   virtual ParticleState shown() const = 0;
-  /// The sums over the points.
-  virtual Energies energies() = 0;
-  /// How densely the points are packed; at an event, or just after a sort.
-  virtual Packing packing() = 0;
+  virtual Energies energies() = 0;  ///< sums over the points
+  virtual Packing packing() = 0;    ///< how densely the points are packed; at an event, or just after a sort
   /// The vertical thickness (T25), initial volume over cell area, [rows * columns] [m]; its sum times the cell area is
   /// the volume of the points to rounding.
   virtual std::vector<double> thickness() = 0;
   /// The impulse that every obstacle was given so far, along x, y and z [N s].
   virtual std::vector<Vec3<double>> obstacle_impulses() const = 0;
-  /// The terrain as kernels use it.
-  virtual const TerrainTables& ground() const = 0;
-  /// The memory that is held where the steps are taken, by owner [bytes].
-  virtual MemoryShares memory() const = 0;
+  virtual const TerrainTables& ground() const = 0;  ///< terrain as kernels use it
+  virtual MemoryShares memory() const = 0;          ///< memory that is held where the steps are taken, by owner [bytes]
   /// The memory that is held where the steps are taken, of all owners together [bytes].
   std::size_t bytes() const {
     std::size_t total = 0;
     for (const auto& [owner, share] : memory()) total += share;
     return total;
   }
-  /// The number of points in the domain.
-  virtual int particle_count() const = 0;
+  virtual int particle_count() const = 0;  ///< number of points in the domain
 };
+
+/// This function throws the NumericalError that names the step, its unbalanced force and the way out.
+[[noreturn]] void refuse_step(const Clock& clock, double step, const StepStats& stats, bool dynamic);
 
 }  // namespace talus::solver

@@ -24,13 +24,8 @@
 //   largest_strain            only where the nominal stress falls beyond a stretch: the logarithm of that stretch
 #pragma once
 
-#include "solver/material/laws/corotated.hpp"
-#include "solver/material/laws/drucker_prager.hpp"
-#include "solver/material/laws/hencky.hpp"
 #include "solver/material/laws/herschel_bulkley.hpp"
-#include "solver/material/laws/linear_elastic.hpp"
 #include "solver/material/laws/mu_of_i.hpp"
-#include "solver/material/laws/neo_hookean.hpp"
 
 namespace talus {
 
@@ -48,7 +43,6 @@ namespace talus {
 
 #define TALUS_ENUMERATOR(name, Law) name,
 #define TALUS_TYPE(name, Law) , Law
-/// The law of a material, by its number in the list.
 enum class MaterialModel { TALUS_MATERIAL_LAWS(TALUS_ENUMERATOR) };
 using MaterialLaws = LawListBehind<void TALUS_MATERIAL_LAWS(TALUS_TYPE)>;
 #undef TALUS_ENUMERATOR

@@ -54,8 +54,7 @@ TALUS_HD auto visit_law(LawList<First, Rest...>, int index, const Visit& visit) 
   return visit(First{});
 }
 
-/// This function declares the key that chooses a law of the list by its name; `Model` is an enum whose values number
-/// the list.
+/// Declares the key that chooses a law of the list by its name; `Model` is an enum whose values number the list.
 template <class Laws, class Model>
 void choose_law(recipe::Visitor& v, std::string_view key, Model& model, std::string_view help) {
   int index = static_cast<int>(model);
@@ -71,13 +70,11 @@ struct LawTable {
 
 template <class Laws>
 struct OptionsOfLaws;
-/// The options of all laws side by side. A recipe names those of every law; those of another law than the chosen one
-/// have no effect.
+/// The options of all laws side by side. A recipe names those of every law; only the chosen one's have an effect.
 template <class... Laws>
 struct OptionsOfLaws<LawList<Laws...>> : Laws::Options... {
   /// The method declares the keys of all laws with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v, const LawTable& shown) { (Laws::Options::describe(v, shown), ...); }
-  /// The options of one law.
   template <class Law>
   const typename Law::Options& options_of() const {
     return *this;

@@ -52,7 +52,6 @@ struct Material : Elasticity<Real>, NumbersOfLaws<Real, Laws> {
   TALUS_HD const typename Law::template Numbers<Real>& numbers_of() const {
     return *this;
   }
-  /// The numbers of a law, to change.
   template <class Law>
   TALUS_HD typename Law::template Numbers<Real>& numbers_of() {
     return *this;
@@ -68,8 +67,7 @@ TALUS_HD Material<Real, Laws> softened(Material<Real, Laws> m, Real plastic_shea
   return m;
 }
 
-/// This function prepares a material for implicit steps: the pressure over which the tip of a cone is rounded [Pa]
-/// (T15b).
+/// Prepares a material for implicit steps: the pressure over which the tip of a cone is rounded [Pa] (T15b).
 template <class Real, class Laws>
 void prepare_for_newton(Material<Real, Laws>& m, Real apex) {
   m.change_law([&](auto, auto& numbers) { numbers.round_tip(apex); });
@@ -90,7 +88,6 @@ struct Materials {
   /// The density of point p [kg/m3].
   TALUS_HD Real density(const int* which, int p) const { return which ? list[which[p]].density : list[0].density; }
 
-  /// Whether the laws of all materials are in a list.
   template <class... Known>
   bool all_in(LawList<Known...>) const {
     for (const Material<Real, Laws>& m : list) {

@@ -8,7 +8,6 @@
 #pragma once
 
 #include "solver/material/material.hpp"
-#include "solver/material/point_tangent.hpp"
 
 namespace talus {
 
@@ -18,16 +17,14 @@ TALUS_HD Mat3<Real> inverse_deformation(const Mat3<Real>& g) {
   return inverted(Mat3<Real>{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}});
 }
 
-/// The stress and stiffness of a point in the principal axes of its trial, `mean` volume change instead of its own
-/// where that is on.
+/// The stress and stiffness of a point in the principal axes of its trial, with `mean` volume change where that is on.
 template <class Real>
 struct PrincipalState {
   Real stretch[3];  ///< eigenvalues of b, less one
   Mat3<Real> axes;
   PrincipalResponse<Real> response;
 
-  /// The constructor takes the deformation of the step; `ahead` is a HeadedGradient, or anything else where the way
-  /// ahead is not known.
+  /// Takes the deformation of the step; `ahead`: a HeadedGradient, or anything else where the way ahead is not known.
   template <class Laws, class Ahead>
   TALUS_HD PrincipalState(const Material<Real, Laws>& m, const MaterialState<Real>& start, const Increment<Real>& step,
                           const Ahead& ahead) {
@@ -90,8 +87,7 @@ TALUS_HD Mat3<Real> nominal_stress_alone(const Material<Real, Laws>& m, const Ma
           tau * Vec3<Real>{inverse.a.z, inverse.b.z, inverse.c.z}};
 }
 
-/// This function puts the tangent of a point in its principal axes together (T17; see point_tangent.hpp); `pull` are
-/// F^-1 n_a.
+/// Puts the tangent of a point in its principal axes together (T17; see point_tangent.hpp); `pull` are F^-1 n_a.
 template <class Real>
 TALUS_HD void put_tangent(const PrincipalState<Real>& state, const Vec3<Real> (&pull)[3], PointTangent<Real>& tangent) {
   const Real *stretch = state.stretch, *tau = state.response.tau, *d = state.response.d;

@@ -16,20 +16,7 @@ class NumberFinder final : public recipe::Visitor {
   void number(std::string_view key, double& value, recipe::Range, std::string_view) override {
     if (key == key_) found_ = &value;
   }
-  void enter(std::string_view, std::string_view) override {}
-  void leave() override {}
-  void optional_number(std::string_view, std::optional<double>&, recipe::Range, std::string_view) override {}
-  void integer(std::string_view, int&, recipe::Range, std::string_view) override {}
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void text(std::string_view, std::string&, std::string_view) override {}
-  void path(std::string_view, std::filesystem::path&, std::string_view) override {}
-  void numbers(std::string_view, std::vector<double>&, recipe::Range, std::string_view) override {}
-  void integers(std::string_view, std::vector<int>&, recipe::Range, std::string_view) override {}
-  void one_of(std::string_view, int&, const std::vector<std::string_view>&, std::string_view) override {}
   std::size_t begin_list(std::string_view, std::size_t, std::string_view) override { return 0; }
-  void begin_item(std::size_t) override {}
-  void end_item() override {}
-  void end_list() override {}
 
  private:
   std::string_view key_;

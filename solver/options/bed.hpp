@@ -4,11 +4,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "common/recipe/recipe.hpp"
 #include "solver/boundary/base_friction.hpp"
-#include "solver/boundary/separation.hpp"
 
 namespace talus::solver {
 
@@ -27,7 +25,6 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   double* named(std::string_view key);
   bool uses(std::string_view key) const;  ///< whether the chosen law uses a key
   bool asks_column() const;               ///< whether the law's coefficient follows from weight and speed of a column
-  /// The name of the chosen law.
   std::string law_name() const;
   /// The key that alone decides the friction of the chosen law; empty where several do.
   std::string friction_key() const;
@@ -38,7 +35,7 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   /// The law in a sentence of the report, "at its bed acts ...".
   std::string sentence() const;
 
-  /// The method declares the keys of [solve.base] with defaults, help and what they need of one another.
+  /// Declares the keys of [solve.base] with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };
 

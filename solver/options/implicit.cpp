@@ -2,37 +2,60 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/options/implicit.hpp"
 
-#include "solver/options/hindrances.hpp"
+#include <fmt/format.h>
+
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
-
 namespace {
 
-/// Whether the pressure of every material follows from its volume change alone.
-bool pressure_by_volume(const SolveOptions& all) {
-  return all.every_material([](const MaterialOptions& m) { return m.pressure_follows_volume(); });
-}
-
-/// This function declares that implicit integrators need laws that they can step; "auto" takes explicit steps of
-/// others.
-void need_implicit_laws(recipe::Visitor& v, const SolveOptions& all) {
-  const Hindrance law = law_beyond_newton(all);
-  v.needs(abilities_of(all.asked_integrator()).obey_cfl || !law,
-          {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with " + law.key,
-           law.reason, "Take integrator = \"explicit\""});
+/// The first law of a material that Newton's iterations do not step.
+Hindrance law_beyond_newton(const SolveOptions& o) {
+  Hindrance law;
+  o.any_material([&](const MaterialOptions& m) {
+    if (m.steps_implicitly()) return false;
+    law = {fmt::format("model = \"{}\"", m.name()),
+           "its stress depends on the rate of shear, and Newton's iterations have not been shown to converge with it"};
+    return true;
+  });
+  return law;
 }
 
 }  // namespace
 
+Hindrance beyond_columns(const SolveOptions& o) {
+  for (const WallOptions& wall : o.walls)
+    if (wall.axis == Axis::z && wall.material_is == Side::below)
+      return {"a [[solve.wall]] across z above the material", "columns are solved for from their foot upwards"};
+  return {};
+}
+
+double longest_by_columns(const SolveOptions& o) {
+  return o.any_material([](const MaterialOptions& m) { return m.holds_tension(); }) ? 1 : 1.5;
+}
+
+Hindrance beyond_rest(const SolveOptions& o) {
+  if (Hindrance law = law_beyond_newton(o)) return law;
+  if (o.base.separation != Separation::free)
+    return {fmt::format("[solve.base] separation = \"{}\"", o.base.separation_name()),
+            "Newton's iterations free a base node whose reaction would pull"};
+  if (o.deterministic) return {"[solve] deterministic = true", "sums of implicit steps are made in any order on a GPU"};
+  if (o.energy_budget) return {"[solve] energy_budget = true", "losses are counted in steps of a flow alone"};
+  return {};
+}
+
 void ImplicitOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
-  need_implicit_laws(v, all);
+  const StepAbilities steps = abilities_of(all.asked_integrator());
+  const Hindrance law = law_beyond_newton(all);
+  v.needs(steps.obey_cfl || !law,  // "auto" takes explicit steps of such laws
+          {"[solve] integrator = \"newmark\", \"quasi-static\" or preset = \"reference\" does not go with " + law.key,
+           law.reason, "Take integrator = \"explicit\""});
   describe_newton(v);
   describe_linear(v, all);
-  const StepAbilities steps = abilities_of(all.asked_integrator());
   v.flag("b_bar", b_bar, "volume change as the mean over a cell: nearly incompressible material does not lock");
   v.needs(
-      !b_bar || !steps.solve_systems || pressure_by_volume(all),
+      !b_bar || !steps.solve_systems ||
+          all.every_material([](const MaterialOptions& m) { return m.pressure_follows_volume(); }),
       {"[solve.implicit] b_bar = true does not go with this [solve.material] model",
        "its pressure does not follow from the volume change alone", "Take model = \"hencky\" or \"drucker-prager\""});
   v.needs(!b_bar || steps.average_volume, {"[solve.implicit] b_bar = true has no effect on explicit steps",

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of implicit steps: Newton and its linear solver.
+// Options of implicit steps, Newton and its linear solver; and what a recipe holds that a way of stepping cannot do.
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -12,10 +13,29 @@ namespace talus::solver {
 
 struct SolveOptions;
 
+/// What of a recipe is in the way of an integrator.
+struct Hindrance {
+  std::string key;     ///< as the recipe has it; empty: nothing is in the way
+  std::string reason;  ///< in words
+  /// Whether something is in the way.
+  explicit operator bool() const { return !key.empty(); }
+};
+
+/// What is in the way of inertia implicit along columns.
+Hindrance beyond_columns(const SolveOptions& options);
+
+/// The longest column-implicit step that the materials bear, over the CFL step (T6d): 1 where one holds tension, for
+/// what a corner of it swings with is not in the springs along columns.
+double longest_by_columns(const SolveOptions& options);
+
+/// What keeps integrator = "auto" from Newmark's steps where all is at rest.
+Hindrance beyond_rest(const SolveOptions& options);
+
+struct SolveOptions;
+
 /// How linear systems are solved: by conjugate gradients, or a factorisation.
 enum class LinearSolver { pcg, cholesky };
-/// How exactly linear systems are solved: always to the same tolerance, or as Newton's iterations get on (Eisenstat &
-/// Walker 1996).
+/// How exactly linear systems are solved: to one tolerance, or as Newton's iterations get on (Eisenstat & Walker 1996).
 enum class Forcing { fixed, eisenstat_walker };
 
 /// The keys of [solve.implicit].
@@ -32,7 +52,6 @@ struct ImplicitOptions {
   Forcing forcing = Forcing::eisenstat_walker;
   int linear_iterations = 5000;  ///< of conjugate gradients, at most
   int step_cuts = 8;             ///< halvings of a step before the run is given up
-  /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
 
  private:

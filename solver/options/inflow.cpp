@@ -6,13 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "solver/options/names.hpp"
+#include "solver/options/output.hpp"
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
 namespace {
 
-/// This function declares where the line lies.
 void describe_line(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
   v.pairs("line_m", o.line, recipe::any,
           "map coordinates of the two ends of the line that material enters through: [[east, north], [east, north]]");
@@ -29,7 +28,7 @@ void describe_line(recipe::Visitor& v, InflowOptions& o, const std::string& show
            "Move one of them"});
 }
 
-/// This function declares the hydrograph: a file, or its rows.
+/// Declares the hydrograph: a file, or its rows.
 void describe_hydrograph(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
   v.path("file", o.file, "table of time_s and discharge_m3_s (docs/reference/formats.md); or hydrograph");
   v.pairs("hydrograph", o.hydrograph, recipe::not_negative,
@@ -50,7 +49,7 @@ void describe_hydrograph(recipe::Visitor& v, InflowOptions& o, const std::string
   v.number("scale", o.scale, recipe::positive, "factor of the discharges");
 }
 
-/// This function declares how fast the material enters, and which way.
+/// Declares how fast the material enters, and which way.
 void describe_motion(recipe::Visitor& v, InflowOptions& o, const std::string& shown) {
   const recipe::Range speeds{0, 100, true, false};
   v.optional_number("speed_m_s", o.speed, speeds, "speed along the ground; the depth follows from the discharge");

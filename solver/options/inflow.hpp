@@ -27,15 +27,14 @@ struct InflowOptions {
   std::optional<double> azimuth;               ///< of the flow, from north over east [deg]; none: across, downhill
   std::vector<int> points_per_cell{2, 2, 2};   ///< along the flow, across it, in height
 
-  /// The method declares the keys with defaults, help and what they need of `all` others; `shown`: the inflow in
-  /// messages.
+  /// Declares the keys with defaults, help and what they need of `all` others; `shown`: the inflow in messages.
   void describe(recipe::Visitor& v, const std::string& shown, const SolveOptions& all);
 };
 
 /// The name of the inflow of this number, counted from 0.
 std::string inflow_name(const InflowOptions& options, std::size_t number);
 
-/// This function declares [[solve.inflow]].
+/// Declares [[solve.inflow]].
 void describe_inflows(recipe::Visitor& v, std::vector<InflowOptions>& inflows, const SolveOptions& all);
 
 }  // namespace talus::solver

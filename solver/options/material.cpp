@@ -18,11 +18,10 @@ bool MaterialOptions::dilates() const {
 
 double MaterialOptions::internal_friction() const {
   return with_law([](auto, const auto& options) {
-    if constexpr (requires { options.internal_friction(); }) {
+    if constexpr (requires { options.internal_friction(); })
       return options.internal_friction();
-    } else {
+    else
       return 0.0;
-    }
   });
 }
 
@@ -35,11 +34,10 @@ bool MaterialOptions::stiffness_is_free() const {
 }
 bool MaterialOptions::holds_tension() const {
   return with_law([](auto law, const auto& options) {
-    if constexpr (requires { options.tension_cutoff; }) {
+    if constexpr (requires { options.tension_cutoff; })
       return options.tension_cutoff > 0;
-    } else {
+    else
       return !law.stiffness_is_free;
-    }
   });
 }
 
@@ -82,13 +80,11 @@ void PartOptions::describe(recipe::Visitor& v) {
 }
 
 bool MassOptions::any_material(const std::function<bool(const MaterialOptions&)>& is) const {
-  return is(material) ||
-         std::any_of(parts.begin(), parts.end(), [&](const PartOptions& part) { return is(part.material); });
+  return is(material) || std::ranges::any_of(parts, [&](const PartOptions& part) { return is(part.material); });
 }
 
 const MaterialOptions& MassOptions::material_of(const std::string& release) const {
-  const auto part =
-      std::find_if(parts.begin(), parts.end(), [&](const PartOptions& p) { return p.release == release; });
+  const auto part = std::ranges::find_if(parts, [&](const PartOptions& p) { return p.release == release; });
   return part == parts.end() ? material : part->material;
 }
 

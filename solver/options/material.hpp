@@ -15,12 +15,10 @@ namespace talus::solver {
 /// Whether Young's modulus is the one given, or the lowest that leaves the flow unchanged (docs/notes/integrators.md).
 enum class StiffnessKind { as_given, automatic };
 
-/// The strain under the dynamic pressure of the flow to which a chosen stiffness holds, unless the recipe says
-/// otherwise.
+/// The usual strain under the dynamic pressure of the flow to which a chosen stiffness holds.
 inline constexpr double default_stiffness_strain = 0.02;
 
-/// The keys of [solve.material]: those of every material, then those of the laws (solver/material/laws), each law's
-/// declared in its header.
+/// The keys of [solve.material]: those of every material, then those of the laws, declared in solver/material/laws.
 struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   MaterialModel model = MaterialModel::drucker_prager;
   double density = 2000;        ///< [kg/m3]
@@ -29,7 +27,7 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   double stiffness_strain = default_stiffness_strain;  ///< that the dynamic pressure may cause, where it is chosen [-]
   double poisson_ratio = 0.25;                         ///< [-]
 
-  /// The method calls visit(Law{}, options of that law) for the chosen law, and returns what that returns.
+  /// Calls visit(Law{}, options of that law) for the chosen law, and returns what that returns.
   template <class Visit>
   auto with_law(const Visit& visit) const {
     return visit_law(model, [&](auto law) { return visit(law, options_of<decltype(law)>()); });
@@ -46,7 +44,6 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   bool stiffness_is_free() const;
   /// Whether one part of the mass may hang on another: in elastic solids, and in sand with a tension cut-off.
   bool holds_tension() const;
-  /// The name of the law in recipes.
   std::string name() const;
   /// Whether the volume change alone decides the pressure, as B-bar needs.
   bool pressure_follows_volume() const;
@@ -55,8 +52,7 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   /// The material in a sentence of the report, "It is ...".
   std::string sentence() const;
 
-  /// The method declares the keys of a table of a material with defaults, help and what they need of one another.
-  /// `table` is what messages call the recipe's table.
+  /// Declares the keys of a table of a material; `table` is what messages call it.
   void describe(recipe::Visitor& v, const std::string& table);
 };
 
@@ -64,7 +60,6 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
 struct PartOptions {
   std::string release;
   MaterialOptions material;
-  /// The method declares the keys with defaults and help.
   void describe(recipe::Visitor& v);
 };
 
@@ -73,9 +68,7 @@ struct MassOptions {
   std::vector<PartOptions> parts;
   MaterialOptions material;
 
-  /// The material of a release, by its name.
   const MaterialOptions& material_of(const std::string& release) const;
-  /// Whether all materials are such.
   bool every_material(const std::function<bool(const MaterialOptions&)>& is) const {
     return !any_material([&](const MaterialOptions& m) { return !is(m); });
   }
@@ -86,7 +79,7 @@ struct MassOptions {
     return any_material([&](const MaterialOptions& m) { return m.density != material.density; });
   }
 
-  /// The method declares [solve.material] and [[solve.part]].
+  /// Declares [solve.material] and [[solve.part]].
   void describe(recipe::Visitor& v);
 };
 

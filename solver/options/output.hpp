@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run writes, and how often.
+// What a run writes, and how often; names of the things that have columns of the history.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,27 @@
 
 namespace talus::solver {
 
+/// This function declares that every item of [[solve.TABLE]] has a name of its own that is fit for the names of
+/// columns. `why` says what the names are for. An item without one takes the names that a place of the domain has.
+void need_names(recipe::Visitor& v, const std::string& table, const std::string& why,
+                const std::vector<std::optional<std::string>>& names);
+/// Declares the same of items with a member `name`.
+template <class Item>
+void need_names(recipe::Visitor& v, const std::string& table, const std::string& why, const std::vector<Item>& items) {
+  std::vector<std::optional<std::string>> names;
+  names.reserve(items.size());
+  for (const Item& item : items) {
+    names.push_back(item.name);
+    if constexpr (requires { item.place; }) {
+      if (item.name.empty() && !item.place.empty()) names.back().reset();
+    }
+  }
+  need_names(v, table, why, names);
+}
+
 struct SolveOptions;
 
-/// The names of what is implausible in a scene (solver/plan/checks.hpp), as `accept` takes them.
+/// The names of what is implausible in a scene (solver/plan/plan.hpp), as `accept` takes them.
 /// "torn-body" is met, if at all, as a run goes on.
 inline constexpr const char* torn_body = "torn-body";
 inline constexpr const char* acceptable[] = {"weight-strain", "slow-waves",     "fast-waves",
@@ -23,7 +42,6 @@ struct GaugeOptions {
   std::string name;
   double x = 0, y = 0;     ///< map coordinates, at_m [m]
   std::string place = {};  ///< of the domain, whose points they are (solver/plan/named_places.hpp); empty: x and y
-  /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };
 
@@ -32,7 +50,6 @@ struct SectionOptions {
   std::string name;
   recipe::Pairs line = {};  ///< map coordinates of its points, in order [m]
   std::string place = {};   ///< of the domain, whose lines they are; empty: `line`
-  /// The method declares the keys with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };
 
@@ -48,7 +65,6 @@ struct OutputOptions {
   std::vector<std::string> accept;  ///< what is refused as implausible, insisted on by name
   std::vector<GaugeOptions> gauges;
   std::vector<SectionOptions> sections;
-  /// The method declares the keys with defaults, help and what they need of `all` others.
   void describe(recipe::Visitor& v, const SolveOptions& all);
 };
 

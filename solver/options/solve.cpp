@@ -2,18 +2,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/options/solve.hpp"
 
-#include <fmt/format.h>
+#include <string>
 
-#include "solver/options/hindrances.hpp"
-#include "solver/options/names.hpp"
+#include <fmt/format.h>
 
 namespace talus::solver {
 namespace {
 
+/// The first of the materials that a search cannot weaken.
+Fault beyond_materials(const SolveOptions& o) {
+  Fault found;
+  o.any_material([&](const MaterialOptions& m) {
+    if (!found.what.empty()) return true;
+    if (!m.steps_implicitly())
+      found = {"model = \"" + m.name() + "\"", "its strength depends on the rate of shear, and at rest has none",
+               "Take model = \"drucker-prager\""};
+    else if (!m.pressure_follows_volume())
+      found = {"model = \"" + m.name() + "\"",
+               "the volume change is averaged over cells, and its pressure does not follow from that alone",
+               "Take model = \"hencky\" for what is to stay elastic"};
+    else if (m.softens())
+      found = {"softening_slip_m", "a strength that falls on the way has one factor for its peak and another one after",
+               "Leave it out, and give the strength that the factor is asked of"};
+    return false;
+  });
+  return found;
+}
+
+/// Whether something has a strength that can be divided.
+bool has_strength(const SolveOptions& o) {
+  const bool bed = visit_law(o.base.law, [](auto law) {
+    return requires { law.weaken(nullptr, 1.0); };
+  });
+  return bed || o.any_material([](const MaterialOptions& m) {
+    return visit_law(m.model, [](auto law) {
+      return requires(typename decltype(law)::Options & options) { options.weaken(1.0); };
+    });
+  });
+}
+
+/// What of the recipe a search cannot do, and why; empty: nothing.
+Fault beyond_search(const SolveOptions& o) {
+  if (Fault material = beyond_materials(o); !material.what.empty()) return material;
+  if (!visit_law(o.base.law, [](auto law) { return law.acts_at_rest; }))
+    return {"[solve.base] law = \"" + o.base.law_name() + "\"", "its friction is that of a flow, not of rest",
+            "Take law = \"coulomb\" with the friction at rest, \"stick\" or \"none\""};
+  if (!has_strength(o))
+    return {"no strength in the recipe", "elastic bodies on a bed that holds, or has no friction, have none to divide",
+            "Take model = \"drucker-prager\" or law = \"coulomb\""};
+  if (!(o.gravity_size() > 0)) return {"gravity_m_s2 = [0, 0, 0]", "nothing pulls at the ground", "Give gravity"};
+  if (o.initial_speed() > 0)
+    return {"initial_velocity_m_s", "a factor of safety is that of ground at rest", "Leave it out"};
+  if (o.shaking.acts())
+    return {"[solve.shaking]", "trials are equilibria, and a record that shakes the ground leaves none",
+            "Leave one of the two out"};
+  if (o.preset == Preset::reference)
+    return {"preset = \"reference\"", "its one linear solve a step does not find an equilibrium", "Leave it out"};
+  return {};
+}
+
 /// The longest stable explicit step over the CFL step (T11), for points that have a cell to themselves.
 constexpr double most_explicit_cfl = 0.8;
 
-/// This function declares what holding base nodes on the ground needs.
+/// Declares what holding base nodes on the ground needs.
 void need_separation(recipe::Visitor& v, const SolveOptions& o) {
   const bool is_free = o.base.separation == Separation::free;
   const std::string key = "[solve.base] separation = \"" + o.base.separation_name() + "\" with ";
@@ -27,7 +78,7 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
        "Take mapping = \"terrain-following\", or separation = \"free\""});
 }
 
-/// This function declares what column-implicit steps need, and what needs them.
+/// Declares what column-implicit steps need, and what needs them.
 void need_columns(recipe::Visitor& v, const SolveOptions& o) {
   const bool by_columns = abilities_of(o.asked_integrator()).solve_columns;
   v.needs(by_columns || o.cfl <= most_explicit_cfl,
@@ -39,12 +90,6 @@ void need_columns(recipe::Visitor& v, const SolveOptions& o) {
   const Hindrance beyond = by_columns ? beyond_columns(o) : Hindrance{};
   v.needs(!beyond, {"[solve] integrator = \"column-implicit\" does not go with " + beyond.key, beyond.reason,
                     "Leave it out, or take integrator = \"explicit\" or \"auto\""});
-}
-
-/// This function declares what `accuracy` settles, and is not given beside it.
-void need_accuracy(recipe::Visitor& v, const SolveOptions& o) {
-  const std::string why = "it follows from accuracy", mend = "Leave it out, or leave accuracy out";
-  v.needs(!o.accuracy || o.cfl == default_cfl, {"[solve] cfl beside accuracy", why, mend});
 }
 
 /// This function declares what a preset sets, and is not given otherwise beside it. The defaults of its keys cannot be
@@ -62,6 +107,19 @@ void need_preset(recipe::Visitor& v, const SolveOptions& o) {
 
 }  // namespace
 
+void StabilityOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
+  v.flag("factor_of_safety", factor_of_safety,
+         "find the factor by which strength can be divided before no equilibrium is left, instead of a run in time");
+  v.number("tolerance", tolerance, recipe::Range{1e-4, 0.2}, "width of the bracket over its lower end");
+  const Fault beyond = factor_of_safety ? beyond_search(all) : Fault{};
+  v.needs(beyond.what.empty(),
+          {"[solve.stability] factor_of_safety = true does not go with " + beyond.what, beyond.why, beyond.mend});
+  const StabilityOptions usual;
+  v.needs(factor_of_safety || tolerance == usual.tolerance,
+          {"[solve.stability] is given without factor_of_safety = true", "tolerance has no effect",
+           "Give factor_of_safety = true, or leave the table out"});
+}
+
 void SolveOptions::describe(recipe::Visitor& v) {
   TimeOptions::describe(v);
   SchemeOptions::describe(v);
@@ -70,7 +128,8 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "implicit", implicit, "implicit steps", *this);
   recipe::table(v, "stability", stability, "factor of safety by strength reduction", *this);
   recipe::list(v, "wall", walls, "plane walls, gates");
-  need_few(v, walls);
+  v.needs(walls.size() <= most_walls, {"[[solve.wall]] is given " + std::to_string(walls.size()) + " times",
+                                       "at most " + std::to_string(most_walls) + " walls fit", "Leave some out"});
   recipe::list(v, "obstacle", obstacles, "bodies in the way: walls, barriers, buildings");
   need_names(v, "obstacle", "its forces are recorded under its name", obstacles);
   recipe::list(v, "load", loads, "forces on parts of the mass");
@@ -80,7 +139,8 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "base", base, "the bed under it");
   need_separation(v, *this);
   need_columns(v, *this);
-  need_accuracy(v, *this);
+  v.needs(!accuracy || cfl == default_cfl,
+          {"[solve] cfl beside accuracy", "it follows from accuracy", "Leave it out, or leave accuracy out"});
   need_preset(v, *this);
 }
 

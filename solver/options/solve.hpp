@@ -3,23 +3,28 @@
 // The options of a recipe's [solve] table. Every key, its default and its help are in describe() and nowhere else.
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "common/recipe/recipe.hpp"
 #include "solver/options/bed.hpp"
 #include "solver/options/implicit.hpp"
 #include "solver/options/inflow.hpp"
 #include "solver/options/loads.hpp"
 #include "solver/options/material.hpp"
-#include "solver/options/obstacles.hpp"
 #include "solver/options/output.hpp"
 #include "solver/options/scheme.hpp"
-#include "solver/options/shaking.hpp"
-#include "solver/options/stability.hpp"
-#include "solver/options/time.hpp"
-#include "solver/options/walls.hpp"
 
 namespace talus::solver {
+
+struct SolveOptions;
+
+/// The keys of [solve.stability].
+struct StabilityOptions {
+  bool factor_of_safety = false;  ///< find it, instead of a run in time
+  double tolerance = 0.005;       ///< width of the bracket over its lower end [-]
+  double largest_factor = 20;     ///< factor beyond which the search ends [-]; no key
+  void describe(recipe::Visitor& v, const SolveOptions& all);
+};
 
 /// The keys of [solve] itself by their concern, then its tables.
 struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions, MassOptions {
@@ -37,15 +42,13 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
     const bool dynamic = preset == Preset::reference && integrator != Integrator::quasi_static;
     return dynamic ? Integrator::newmark : integrator;
   }
-  /// The integrator of the steps of a flow.
   Integrator flow_integrator() const { return integrator == Integrator::automatic ? flow : integrator; }
 
-  /// The method declares all keys of [solve] and its tables with defaults, help and what they need of one another.
+  /// Declares all keys of [solve] and its tables with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);
 };
 
-/// The options with `preset` spelt out: preset = "reference" sets what the reference paper states and leaves the rest
-/// alone.
+/// The options with `preset` spelt out: preset = "reference" sets what the reference paper states and nothing else.
 SolveOptions with_preset(SolveOptions options);
 
 }  // namespace talus::solver

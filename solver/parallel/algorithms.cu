@@ -1,10 +1,43 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cstddef>
+#include <algorithm>
+#include <chrono>
 #include <stdexcept>
-#include <string>
 
 #include "solver/parallel/algorithms.hpp"
+
+namespace talus {
+namespace {
+
+struct CopyNumbers {
+  const Vec4<double>* from;
+  Vec4<double>* to;
+  TALUS_HD void operator()(int i) const { to[i] = from[i]; }
+};
+
+template <class Device>
+double measure_copy(const Device& device) {
+  constexpr std::size_t count = 1 << 23;
+  Buffer<Vec4<double>, Device> from(device, count), to(device, count);
+  from.fill_zero();
+  to.fill_zero();
+  synchronise(device);
+  double best = 0;
+  for (int round = 0; round < 5; ++round) {
+    const auto begun = std::chrono::steady_clock::now();
+    for_each(device, static_cast<int>(count), CopyNumbers{from.data(), to.data()});
+    synchronise(device);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    best = std::max(best, 2.0 * count * sizeof(Vec4<double>) / seconds);
+  }
+  return best;
+}
+
+}  // namespace
+
+double copy_bandwidth(const CpuDevice& device) { return measure_copy(device); }
+
+}  // namespace talus
 
 #if defined(__CUDACC__)
 #include <thrust/device_ptr.h>
@@ -17,7 +50,6 @@
 #include <cub/device/device_radix_sort.cuh>
 
 #include "solver/parallel/gpu_state.hpp"
-#include "solver/parallel/sums.hpp"
 
 namespace talus {
 
@@ -160,6 +192,8 @@ double free_memory(const GpuDevice& device) {
   return static_cast<double>(free) + static_cast<double>(reserved - used);
 }
 
+double copy_bandwidth(const GpuDevice& device) { return measure_copy(device); }
+
 }  // namespace talus
 
 #else
@@ -176,6 +210,7 @@ double inner_product(const GpuDevice&, const double*, const double*, int) { thro
 void gather(const GpuDevice&, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
 void scatter(const GpuDevice&, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
 double free_memory(const GpuDevice&) { throw std::logic_error("no CUDA"); }
+double copy_bandwidth(const GpuDevice&) { throw std::logic_error("this binary was built without CUDA"); }
 }  // namespace talus
 
 #endif

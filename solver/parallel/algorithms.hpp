@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sort, scan and gather on either device: oneTBB on the CPU, CUB and Thrust on the GPU. Pointers are into the memory of
-// the device that is named with them.
+// Sort, scan, gather and runs of equal keys on either device: oneTBB on the CPU, CUB and Thrust on the GPU; and how
+// fast memory can be copied; sums and copies of vectors over the nodes. Pointers are into the memory of the device that
+// is named with them.
 #pragma once
 
 #include <array>
@@ -25,18 +26,14 @@ std::size_t sort_space_bytes(const CpuDevice&);
 std::size_t sort_space_bytes(const GpuDevice& device);
 /// This function frees the memory that sorts on the device keep.
 void drop_sort_space(const CpuDevice&);
-/// On a GPU the next sort takes that memory anew.
 void drop_sort_space(const GpuDevice& device);
 
-/// This function writes sums[i] = values[0] + ... + values[i-1] for `count` values, and returns the total. Both may be
-/// one array.
+/// Writes sums[i] = values[0] + ... + values[i-1] for `count` values, and returns the total. Both may be one array.
 int exclusive_sum(const CpuDevice&, const int* values, int* sums, int count);
 /// On a GPU the call waits for the total.
 int exclusive_sum(const GpuDevice& device, const int* values, int* sums, int count);
-/// This function replaces two lists of one length by their exclusive sums, and returns their totals; the device is
-/// waited for once.
+/// Replaces two lists of one length by their exclusive sums, and returns their totals; the device is waited for once.
 std::array<int, 2> exclusive_sums(const CpuDevice& device, int* first, int* second, int count);
-/// On a GPU both totals come to the host in one copy.
 std::array<int, 2> exclusive_sums(const GpuDevice& device, int* first, int* second, int count);
 
 /// The sum of a[i] * b[i], in a fixed order on the CPU whatever the number of threads.
@@ -46,16 +43,13 @@ double inner_product(const GpuDevice& device, const double* a, const double* b, 
 
 /// This function writes to[i] = from[order[i]] for `count` elements.
 void gather(const CpuDevice&, const double* from, const int* order, double* to, int count);
-/// On a GPU the gather is one kernel.
 void gather(const GpuDevice& device, const double* from, const int* order, double* to, int count);
 /// This function writes to[order[i]] = from[i] for `count` elements; `order` names no place twice.
 void scatter(const CpuDevice&, const double* from, const int* order, double* to, int count);
-/// On a GPU the scatter is one kernel.
 void scatter(const GpuDevice& device, const double* from, const int* order, double* to, int count);
 
 /// The memory that can still be taken on a device [bytes].
 double free_memory(const CpuDevice&);
-/// On a GPU that is what CUDA reports as free [bytes].
 double free_memory(const GpuDevice& device);
 
 /// This function copies a few bytes out of a device's memory, once all that was started on it is done.
@@ -67,6 +61,75 @@ void copy_to_host(const Device& device, void* host, const void* from, std::size_
 template <class Device>
 void copy_from_host(const Device& device, void* to, const void* host, std::size_t bytes) {
   detail::upload(device, to, host, bytes);
+}
+
+namespace detail {
+struct MarkRunStarts {
+  const std::uint64_t* keys;
+  int* marks;
+  TALUS_HD void operator()(int i) const { marks[i] = i == 0 || keys[i] != keys[i - 1] ? 1 : 0; }
+};
+struct PlaceRunStarts {
+  const std::uint64_t* keys;
+  const int* places;  ///< runs before position i
+  int count, runs;
+  int* starts;
+  TALUS_HD void operator()(int i) const {
+    if (i == 0 || keys[i] != keys[i - 1]) starts[places[i]] = i;
+    if (i == count - 1) starts[runs] = count;
+  }
+};
+}  // namespace detail
+
+/// This function finds the runs of equal keys: starts[r] becomes the first position of run r, starts[runs] the number
+/// of keys. It returns the number of runs.
+template <class Device>
+int find_runs(const Buffer<std::uint64_t, Device>& keys, Buffer<int, Device>& starts, Buffer<int, Device>& scratch) {
+  const Device& device = keys.device();
+  const int count = static_cast<int>(keys.size());
+  scratch.resize(keys.size());
+  for_each(device, count, detail::MarkRunStarts{keys.data(), scratch.data()});
+  const int runs = exclusive_sum(device, scratch.data(), scratch.data(), count);
+  starts.resize(static_cast<std::size_t>(runs) + 1);
+  if (count == 0) starts.fill_zero();
+  for_each(device, count, detail::PlaceRunStarts{keys.data(), scratch.data(), count, runs, starts.data()});
+  return runs;
+}
+
+/// The bytes read and written per second by a copy of a quarter of a gigabyte, the best of five [B/s].
+double copy_bandwidth(const CpuDevice&);
+/// On a GPU both copies are in its memory [B/s].
+double copy_bandwidth(const GpuDevice& device);
+
+/// A vector of three numbers for every node.
+template <class Device>
+using NodeVector = Buffer<Vec3<double>, Device>;
+
+namespace detail {
+struct Axpby {  // y = a x + b y
+  double a, b;
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const { y[n] = x[n] * a + y[n] * b; }
+};
+struct Copy {
+  const Vec3<double>* x;
+  Vec3<double>* y;
+  TALUS_HD void operator()(int n) const { y[n] = x[n]; }
+};
+}  // namespace detail
+
+/// This function sets y = a x + b y, of vectors of one size.
+template <class Device>
+void axpby(double a, const NodeVector<Device>& x, double b, NodeVector<Device>& y) {
+  for_each(y.device(), static_cast<int>(y.size()), detail::Axpby{a, b, x.data(), y.data()});
+}
+
+/// This function copies x to y; y takes the size of x.
+template <class Device>
+void copy(const NodeVector<Device>& x, NodeVector<Device>& y) {
+  y.resize(x.size());
+  for_each(y.device(), static_cast<int>(x.size()), detail::Copy{x.data(), y.data()});
 }
 
 }  // namespace talus

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "solver/parallel/macros.hpp"
 #include "solver/parallel/math.hpp"
 
 namespace talus {
@@ -65,8 +64,7 @@ TALUS_HD void atomic_max(int* target, int value) {
 #endif
 }
 
-/// This function adds to one double from many threads. Lanes of a warp that meet here name the same target, as in
-/// atomic_max_positive().
+/// Adds to one double from many threads. Lanes of a warp that meet here name one target, as in atomic_max_positive().
 TALUS_HD void atomic_add(double* target, double value) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __activemask();
@@ -118,9 +116,8 @@ TALUS_HD void raise_flag(int* flag, int value) {
 #endif
 }
 
-/// This function adds to a grid node while points are scattered. On the CPU the scatter runs by colours of column
-/// blocks that share no node (for_each_grouped), so a plain sum is enough and its order is always the same; on the GPU
-/// the sum is atomic.
+/// Adds to a grid node while points are scattered. On the CPU the scatter runs by colours of column blocks that share
+/// no node (for_each_grouped), so a plain sum is enough and its order is always the same; on the GPU the sum is atomic.
 template <class Real>
 TALUS_HD void scatter_add(Real* target, Real value) {
 #if defined(__CUDA_ARCH__)

@@ -33,19 +33,15 @@ class Buffer {
   Buffer& operator=(const Buffer&) = delete;
   ~Buffer() { release(); }
 
-  /// The device that owns the memory.
-  const Device& device() const { return device_; }
+  const Device& device() const { return device_; }  ///< device that owns the memory
   /// The address of the first element, in the memory of the device; null while nothing has been taken.
   T* data() { return data_; }
-  /// The address of the first element, to read from.
   const T* data() const { return data_; }
-  /// The number of elements in use.
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return size_; }  ///< number of elements in use
   /// The memory taken [bytes], of which the elements in use may be a part.
   std::size_t bytes() const { return capacity_ * sizeof(T); }
 
-  /// The method sets the number of elements; contents are undefined. It throws NumericalError where the device has too
-  /// little memory.
+  /// Sets the number of elements; contents are undefined. Throws NumericalError: too little memory on the device.
   void resize(std::size_t size) {
     if (size > capacity_) {
       const std::size_t capacity = capacity_ == 0 ? size : size + size / 8;
@@ -69,6 +65,11 @@ class Buffer {
   /// The method sets every byte in use to zero.
   void fill_zero() {
     if (size_ > 0) detail::fill_zero(device_, data_, size_ * sizeof(T));
+  }
+  /// The method sets the number of elements, and every byte of them to zero.
+  void resize_zeroed(std::size_t size) {
+    resize(size);
+    fill_zero();
   }
   /// The method gives the memory back; the size becomes 0.
   void drop() noexcept {
@@ -107,13 +108,9 @@ class Buffers {
   const Buffer<T, Device>& operator[](Index n) const {
     return all_[static_cast<std::size_t>(n)];
   }
-  /// The first buffer.
-  auto begin() { return all_.begin(); }
-  /// The end of the buffers.
-  auto end() { return all_.end(); }
-  /// The first buffer, to read from.
+  auto begin() { return all_.begin(); }  ///< first buffer
+  auto end() { return all_.end(); }      ///< end of the buffers
   auto begin() const { return all_.begin(); }
-  /// The end of the buffers, to read from.
   auto end() const { return all_.end(); }
 
  private:
@@ -127,6 +124,12 @@ class Buffers {
 template <class Real, class Device>
 void upload_as(Buffer<Real, Device>& to, const std::vector<double>& from) {
   to.upload(std::vector<Real>(from.begin(), from.end()));
+}
+
+/// The memory that buffers, and what else has bytes(), take together [bytes].
+template <class... Owners>
+std::size_t bytes_of(const Owners&... owners) {
+  return (owners.bytes() + ...);
 }
 
 }  // namespace talus

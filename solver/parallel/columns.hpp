@@ -56,8 +56,7 @@ struct ColumnTwice {
   }
 };
 
-/// This function runs a kernel twice over the layers of the columns of `blocks` blocks; see ColumnTwice for what a
-/// kernel has.
+/// Runs a kernel twice over the layers of the columns of `blocks` blocks; see ColumnTwice for what a kernel has.
 template <int columns, class Kernel>
 void for_each_column_twice(const CpuDevice& device, int blocks, const Kernel& kernel) {
   for_each(device, blocks * columns, ColumnTwice<Kernel>{kernel});

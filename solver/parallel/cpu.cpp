@@ -1,15 +1,20 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <utility>
+#include <vector>
 
-#include "solver/parallel/for_each.hpp"
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
+
+#include "common/stage/machine.hpp"
+#include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/host_room.hpp"
-#include "solver/parallel/loop_order.hpp"
 #include "solver/parallel/pace.hpp"
 
 namespace talus {
@@ -64,4 +69,93 @@ void cpu_parallel(int count, int grain, void (*body)(const void*, int, int), con
 }
 
 }  // namespace detail
+
+namespace {
+
+constexpr int leaf = 4096;  // products that are added up one after the other
+
+/// Halves a range as oneTBB's simple_partitioner does, so that the sum has the same bits on one thread as on many.
+double sum_of_products(const double* a, const double* b, int begin, int end) {
+  if (end - begin > leaf) {
+    const int middle = begin + (end - begin) / 2;
+    return sum_of_products(a, b, begin, middle) + sum_of_products(a, b, middle, end);
+  }
+  double total = 0;
+  for (int i = begin; i < end; ++i) total += a[i] * b[i];
+  return total;
+}
+
+/// Adds some of the products to a sum.
+struct Products {
+  const detail::LoopOrder* order;
+  const double *a, *b;
+
+  TALUS_HANDED_OVER double operator()(const tbb::blocked_range<int>& range, double total) const {
+    order->begin_piece();
+    total += sum_of_products(a, b, range.begin(), range.end());
+    order->end_piece();
+    return total;
+  }
+};
+
+}  // namespace
+
+void sort_order(const CpuDevice&, Buffer<std::uint64_t, CpuDevice>& keys, Buffer<int, CpuDevice>& order, int) {
+  const int count = static_cast<int>(keys.size());
+  order.resize(keys.size());
+  std::vector<std::pair<std::uint64_t, int>> pairs(keys.size());
+  for (int i = 0; i < count; ++i) pairs[static_cast<std::size_t>(i)] = {keys.data()[i], i};
+  // The index makes every pair distinct, so the order is that of a stable sort, whoever sorts.
+  const auto alone = [&] { std::sort(pairs.begin(), pairs.end()); };
+  if constexpr (detail::under_thread_sanitizer) {
+    alone();
+  } else {
+    static const char kind = 0;
+    detail::paced(&kind, count, alone, [&] { tbb::parallel_sort(pairs); });
+  }
+  for (int i = 0; i < count; ++i) {
+    keys.data()[i] = pairs[static_cast<std::size_t>(i)].first;
+    order.data()[i] = pairs[static_cast<std::size_t>(i)].second;
+  }
+}
+
+int exclusive_sum(const CpuDevice&, const int* values, int* sums, int count) {
+  int total = 0;
+  for (int i = 0; i < count; ++i) {
+    const int value = values[i];
+    sums[i] = total;
+    total += value;
+  }
+  return total;
+}
+
+std::size_t sort_space_bytes(const CpuDevice&) { return 0; }
+void drop_sort_space(const CpuDevice&) {}
+
+std::array<int, 2> exclusive_sums(const CpuDevice& device, int* first, int* second, int count) {
+  return {exclusive_sum(device, first, first, count), exclusive_sum(device, second, second, count)};
+}
+
+double inner_product(const CpuDevice&, const double* a, const double* b, int count) {
+  const auto alone = [=] { return sum_of_products(a, b, 0, count); };
+  if (count <= leaf) return alone();
+  static const char kind = 0;
+  return detail::paced(&kind, count, alone, [=] {
+    const detail::LoopOrder order;
+    return tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<int>(0, count, leaf), 0.0, Products{&order, a, b}, [](double x, double y) { return x + y; },
+        tbb::simple_partitioner());
+  });
+}
+
+void gather(const CpuDevice&, const double* from, const int* order, double* to, int count) {
+  for (int i = 0; i < count; ++i) to[i] = from[order[i]];
+}
+
+void scatter(const CpuDevice&, const double* from, const int* order, double* to, int count) {
+  for (int i = 0; i < count; ++i) to[order[i]] = from[i];
+}
+
+double free_memory(const CpuDevice&) { return memory_of_machine("MemAvailable"); }
+
 }  // namespace talus

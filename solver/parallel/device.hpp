@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The devices that kernels run on: CpuDevice (oneTBB) and GpuDevice (CUDA), both in one binary, chosen at run time.
+// The devices that kernels run on: CpuDevice (oneTBB) and GpuDevice (CUDA), both in one binary, and AnyDevice, one of
+// them that is chosen at run time.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "solver/parallel/profile.hpp"
 
@@ -24,11 +26,9 @@ class Buffer;
 class CpuDevice {
  public:
   static constexpr bool is_gpu = false;
-  /// A device with a profile of its own.
-  static CpuDevice make();
+  static CpuDevice make();  ///< a device with a profile of its own
 
-  /// The times of the kernels that were started on this device.
-  Profile& profile() const { return *profile_; }
+  Profile& profile() const { return *profile_; }  ///< times of the kernels that were started on this device
 
  private:
   template <class T, class Device>
@@ -40,23 +40,18 @@ class CpuDevice {
 
 /// A GPU with a stream of its own, on which all its kernels, copies and fills run in the order they were started. A
 /// handle: copies share stream, scratch memory and profile, which end with the last of them (a Buffer holds one). Two
-/// devices may be of one GPU; their work does not wait for one another. One device takes work from one thread at a
-/// time.
+/// devices may be of one GPU; their work does not wait for one another. Each takes work from one thread at a time.
 class GpuDevice {
  public:
   static constexpr bool is_gpu = true;
   /// A new stream on the GPU of that index, 0 <= index < count(). Throws std::runtime_error where CUDA has none, and
   /// std::logic_error in a binary without CUDA.
   static GpuDevice make(int index = 0);
-  /// The number of GPUs that CUDA sees; 0 in a binary without CUDA.
-  static int count();
+  static int count();  ///< number of GPUs that CUDA sees; 0 in a binary without CUDA
 
-  /// The number of the GPU, 0 <= index() < count().
-  int index() const;
-  /// The stream of the device.
-  CUstream_st* stream() const;
-  /// The times of the kernels that were started on this device.
-  Profile& profile() const;
+  int index() const;            ///< number of the GPU, 0 <= index() < count()
+  CUstream_st* stream() const;  ///< stream of the device
+  Profile& profile() const;     ///< times of the kernels that were started on this device
   /// The resources of the device, for the functions of solver/parallel.
   GpuState& state() const { return *state_; }
 
@@ -74,8 +69,7 @@ bool gpu_available();
 /// The name of a GPU, such as "NVIDIA H200"; empty without one.
 std::string gpu_name(int index = 0);
 
-/// This function waits until all that was started on the device is done; it throws std::runtime_error where a kernel
-/// has failed.
+/// Waits until all that was started on the device is done; it throws std::runtime_error where a kernel has failed.
 inline void synchronise(const CpuDevice&) {}
 /// On a GPU the host waits for the stream.
 void synchronise(const GpuDevice& device);
@@ -112,4 +106,25 @@ void gpu_replay(const GpuDevice& device, void* graph);
 void gpu_drop(void* graph);
 
 }  // namespace detail
+}  // namespace talus
+namespace talus {
+
+/// A CpuDevice or a GpuDevice; a handle, as they are.
+class AnyDevice {
+ public:
+  AnyDevice(CpuDevice device) : device_(std::move(device)) {}
+  AnyDevice(GpuDevice device) : device_(std::move(device)) {}
+
+  bool is_gpu() const { return std::holds_alternative<GpuDevice>(device_); }  ///< whether the device is a GPU
+  /// The device as a CpuDevice; throws std::bad_variant_access where it is a GPU.
+  const CpuDevice& cpu() const { return std::get<CpuDevice>(device_); }
+  /// The device as a GpuDevice; throws std::bad_variant_access where it is the CPU.
+  const GpuDevice& gpu() const { return std::get<GpuDevice>(device_); }
+  /// The times of the kernels that were started on this device.
+  Profile& profile() const { return is_gpu() ? gpu().profile() : cpu().profile(); }
+
+ private:
+  std::variant<CpuDevice, GpuDevice> device_;
+};
+
 }  // namespace talus

@@ -1,22 +1,93 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loops over an index on either device. A kernel is a plain struct of pointers and numbers with operator()(int index)
-// const.
+// const. A kernel as it is launched on a GPU is one with __device__ void run(LaunchBlock) const, which every thread of
+// every block calls; where it has `most_threads` and `least_blocks`, it takes as few registers as let that many blocks
+// of so many threads share a multiprocessor.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "solver/parallel/atomics.hpp"
 #include "solver/parallel/buffer.hpp"
-#include "solver/parallel/device.hpp"
-#include "solver/parallel/launch.hpp"
-#include "solver/parallel/macros.hpp"
-#include "solver/parallel/profile.hpp"
 
 namespace talus {
+
+#if defined(__CUDACC__)
+
+/// The block of threads that a kernel's code runs in, and the number of blocks of its run.
+struct LaunchBlock {
+  int index, count;
+};
+
+namespace detail {
+/// Every kernel's first words. From compute capability 9.0 on a kernel comes onto the device while the one before it is
+/// ending (programmatic dependent launch), and waits here until that has written all; its own successor may come then.
+__device__ inline void begin_kernel() {
+#if __CUDA_ARCH__ >= 900
+  asm volatile("griddepcontrol.wait;" ::: "memory");
+  asm volatile("griddepcontrol.launch_dependents;");
+#endif
+}
+
+template <class Kernel>
+__device__ __forceinline__ void run_one(const Kernel& kernel) {
+  begin_kernel();
+  kernel.run({static_cast<int>(blockIdx.x), static_cast<int>(gridDim.x)});
+}
+
+template <class Kernel>
+__global__ void run_kernel(Kernel kernel) {
+  run_one(kernel);
+}
+template <class Kernel>
+__global__ __launch_bounds__(Kernel::most_threads, Kernel::least_blocks) void run_dense_kernel(Kernel kernel) {
+  run_one(kernel);
+}
+
+/// How a kernel is laid out on a GPU.
+struct LaunchShape {
+  CUstream_st* stream;
+  int blocks, threads;
+  bool early;  ///< it may come onto the GPU while the one before it is ending
+};
+
+/// Starts a kernel that opens with begin_kernel(); cudaGetLastError() reports what fails.
+template <class... Parameters>
+void launch(const LaunchShape& shape, void (*kernel)(Parameters...),
+            const std::type_identity_t<Parameters>&... arguments) {
+  cudaLaunchAttribute early{};
+  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  early.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t config{};
+  config.gridDim = dim3(static_cast<unsigned>(shape.blocks));
+  config.blockDim = dim3(static_cast<unsigned>(shape.threads));
+  config.stream = shape.stream;
+  config.attrs = &early;
+  constexpr int small = 200000;  // threads; with more, those that wait are in the way
+  config.numAttrs = shape.early && shape.blocks * static_cast<long>(shape.threads) < small ? 1 : 0;
+  static_cast<void>(cudaLaunchKernelEx(&config, kernel, arguments...));
+}
+
+/// Starts a kernel on the device.
+template <class Kernel>
+void gpu_launch(const GpuDevice& device, const char* where, int blocks, int threads, const Kernel& kernel) {
+  gpu_select(device);
+  const LaunchShape shape{device.stream(), blocks, threads, gpu_starts_early(device)};
+  if constexpr (requires { Kernel::least_blocks; }) {
+    launch(shape, run_dense_kernel<Kernel>, kernel);
+  } else {
+    launch(shape, run_kernel<Kernel>, kernel);
+  }
+  gpu_check_launch(where);
+}
+
+}  // namespace detail
+#endif
 
 namespace detail {
 /// Calls body(kernel, begin, end) for ranges of at least `grain` indices that cover [0, count), in parallel.
@@ -42,8 +113,18 @@ struct PointGroups {
   std::vector<Range> ranges[4];
   bool in_order = false;                         ///< a GPU goes by them too, so that sums are the same on every run
   std::vector<Buffer<Range, GpuDevice>> on_gpu;  ///< the four, where a GPU goes by them
-  /// The CPU goes by `ranges` themselves; nothing is copied.
-  void upload(const CpuDevice&) {}
+  /// The method makes a range of all neighbours of one block, by the colour of that: block_of(i) is the number of the
+  /// block of i from 0 to count - 1, in order, and `across` how many of them lie beside one another.
+  template <class BlockOf>
+  void group(int count, int across, const BlockOf& block_of) {
+    for (auto& of_colour : ranges) of_colour.clear();
+    for (int begin = 0, end = 0; begin < count; begin = end) {
+      const std::uint64_t block = block_of(begin), width = static_cast<std::uint64_t>(across);
+      for (end = begin + 1; end < count && block_of(end) == block;) ++end;
+      ranges[(block % width & 1) + 2 * (block / width & 1)].emplace_back(begin, end);
+    }
+  }
+  void upload(const CpuDevice&) {}  ///< a CPU goes by `ranges` themselves
   /// The method copies the ranges to a GPU where that goes by them too, one buffer for each colour.
   void upload(const GpuDevice& device) {
     while (on_gpu.size() < 4) on_gpu.emplace_back(device);
@@ -75,8 +156,7 @@ void for_each_grouped(const CpuDevice& device, int count, const PointGroups& gro
   }
 }
 
-/// From so many points on every multiprocessor has more to do than it can hold: what counts then is how much gets
-/// through, not how soon.
+/// From so many points on every multiprocessor has more to do than it can hold: throughput counts then, not latency.
 inline constexpr int points_that_keep_a_gpu_busy = 65536;
 
 #if defined(__CUDACC__)
@@ -106,8 +186,7 @@ struct EachIndexDensely : EachIndex<Kernel> {
 inline bool is_busy_with(int count) { return count >= points_that_keep_a_gpu_busy; }
 }  // namespace detail
 
-/// On a GPU the kernel has one thread for each index, and as many blocks as its member `dense` asks for where there are
-/// many.
+/// On a GPU the kernel has one thread for each index, and as many blocks as its `dense` asks for where there are many.
 template <class Kernel>
 void for_each(const GpuDevice& device, int count, const Kernel& kernel) {
   if (count <= 0) return;

@@ -6,10 +6,8 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "common/error.hpp"
-#include "solver/parallel/for_each.hpp"
 #include "solver/parallel/host_room.hpp"
 
 #if defined(__CUDACC__)

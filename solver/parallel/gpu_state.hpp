@@ -11,14 +11,11 @@
 #include <memory>
 #include <vector>
 
-#include "solver/parallel/buffer.hpp"
-#include "solver/parallel/profile.hpp"
 #include "solver/parallel/sums.hpp"
 
 namespace talus {
 
-/// This function throws where a call of CUDA failed: NumericalError where memory was short, std::runtime_error
-/// otherwise. `what` names the call.
+/// Throws where the call of CUDA `what` failed: NumericalError where memory was short, std::runtime_error otherwise.
 void check_cuda(cudaError_t code, const char* what);
 
 /// The memory that Thrust borrows, kept for its next call: to allocate device memory is to wait for the device.
@@ -30,11 +27,9 @@ class BorrowedMemory {
   BorrowedMemory& operator=(const BorrowedMemory&) = delete;
   ~BorrowedMemory();
 
-  /// The method returns at least that many bytes of device memory, taken anew only where none is free; it throws
-  /// NumericalError where memory is short.
+  /// At least that many bytes of device memory, taken anew only where none is free. Throws NumericalError: none left.
   char* allocate(std::ptrdiff_t bytes);
-  /// The method keeps memory from allocate() for the next call.
-  void deallocate(char* memory, std::size_t bytes);
+  void deallocate(char* memory, std::size_t bytes);  ///< keeps memory from allocate() for the next call
 
  private:
   GpuDevice device_;
@@ -62,8 +57,7 @@ struct GpuScratch {
 };
 
 /// The page-locked host memory that few bytes pass through, on their way in and out: they come sooner by memory that
-/// stays where it is. What goes in takes the next free bytes; all are free again once the host has waited for the
-/// stream.
+/// stays where it is. What goes in takes the next free bytes, all free again once the host has waited.
 struct LockedMemory {
   static constexpr std::size_t few = 16384, size = 16 * few;  ///< [bytes]; the first few are for what comes out
   char* memory = nullptr;                                     ///< null where none was to be had
@@ -77,10 +71,8 @@ struct GpuState {
   GpuState& operator=(const GpuState&) = delete;
   ~GpuState();
 
-  /// The method makes this GPU the one that this thread's CUDA calls mean, and notes that it gets work.
-  void select();
-  /// The method waits for the stream.
-  void wait(const char* what);
+  void select();  ///< makes this GPU the one that this thread's CUDA calls mean, and notes that it gets work
+  void wait(const char* what);  ///< waits for the stream
 
   int index;
   cudaStream_t stream = nullptr;

@@ -12,7 +12,6 @@
 #include "solver/parallel/for_each.hpp"
 
 namespace talus {
-
 namespace detail {
 /// Memory of the host that the device's kernels see, at least as large as asked for [bytes].
 void* lend_host(const CpuDevice&, std::size_t bytes);
@@ -29,8 +28,7 @@ struct CopyWord {
   TALUS_HD void operator()(int i) const { to[i] = from[i]; }
 };
 
-/// An object on the host that kernels can copy from and to. What they write stands there once the host has waited for
-/// the device.
+/// An object on the host that kernels can copy from and to. What they write is there once the host has waited.
 template <class T, class Device>
 class HostRoom {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint32_t) == 0);
@@ -44,8 +42,7 @@ class HostRoom {
   HostRoom& operator=(const HostRoom&) = delete;
   ~HostRoom() { detail::give_back_host(device_, object_, sizeof(T)); }
 
-  /// The object, for the host.
-  T& operator*() const { return *object_; }
+  T& operator*() const { return *object_; }  ///< object, for the host
   /// The method starts a copy of the object to the memory of the device.
   void copy_to(T* memory) const { copy(object_, memory); }
   /// The method starts a copy from the memory of the device to the object.

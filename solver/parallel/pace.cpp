@@ -2,14 +2,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/parallel/pace.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include <tbb/global_control.h>
 
-#include <algorithm>
+namespace talus {
+namespace {
 
-#include "solver/parallel/alone.hpp"
+thread_local bool works_alone = false;
+
+}  // namespace
+
+Alone::Alone() : before_(std::exchange(works_alone, true)) {}
+Alone::~Alone() { works_alone = before_; }
+bool Alone::here() { return works_alone; }
+
+}  // namespace talus
 
 namespace talus::detail {
-
 namespace {
 
 constexpr int loops_of_a_trial = 4;

@@ -22,11 +22,9 @@ double gpu_seconds_between(void* first, void* second);
 void gpu_forget_mark(const GpuDevice& device, void* mark);
 }  // namespace detail
 
-/// Seconds by phase and kernel of the work that one device is given. A phase inside another is taken out of that one's
-/// time.
+/// Seconds by phase and kernel of the work that one device is given. A phase inside another is not in that one's time.
 class Profile {
  public:
-  /// A named phase of the work, with its time.
   struct Phase {
     std::string name;
     double seconds = 0;
@@ -53,33 +51,25 @@ class Profile {
     on_ = true;
     kernels_too_ = kernels;
   }
-  /// The method turns measuring off; what was measured stays.
-  void turn_off() { on_ = false; }
+  void turn_off() { on_ = false; }  ///< turns measuring off; what was measured stays
   /// The method forgets what was measured so far; it is called between phases.
   void clear() {
     phases_.clear();
     kernels_.clear();
   }
-  /// Whether phases are measured.
-  bool on() const { return on_; }
-  /// Whether kernels are measured too.
-  bool with_kernels() const { return on_ && kernels_too_; }
-  /// The method opens a phase within the present one.
-  void enter(const char* name);
-  /// The method closes the phase opened last.
-  void leave();
-  /// Whether a phase is open.
-  bool within_phase() const { return !open_.empty(); }
+  bool on() const { return on_; }                                  ///< whether phases are measured
+  bool with_kernels() const { return on_ && kernels_too_; }        ///< whether kernels are measured too
+  void enter(const char* name);                                    ///< opens a phase within the present one
+  void leave();                                                    ///< closes the phase opened last
+  bool within_phase() const { return !open_.empty(); }             ///< whether a phase is open
   const std::vector<Phase>& phases() const { return phases_; }     ///< all phases in the order met
   const std::vector<Kernel>& kernels() const { return kernels_; }  ///< all kernels in the order met
 
   /// The method begins a recording. Its work is named while it is recorded, and timed by its marks when it runs:
   /// nothing can wait for the device in between.
   void begin_recording() { recording_ = true; }
-  /// The method ends the recording and returns its marks.
-  std::vector<Mark> end_recording();
-  /// Whether a recording is under way.
-  bool recording() const { return recording_; }
+  std::vector<Mark> end_recording();             ///< ends the recording and returns its marks
+  bool recording() const { return recording_; }  ///< whether a recording is under way
   /// The method adds the seconds between the marks, the device being done with them, to their kernels; and to their
   /// phases, out of the one that is open.
   void take(const std::vector<Mark>& marks);
@@ -89,8 +79,7 @@ class Profile {
   std::size_t kernel(std::string_view name);  ///< index of a kernel of the present phase, new or not
   /// The method adds a call of a kernel that took `seconds` and moved `bytes`.
   void add(std::size_t kernel, double seconds, double bytes);
-  /// The method keeps a mark for settle(), or for the recording.
-  void add(const Mark& mark) { marks_.push_back(mark); }
+  void add(const Mark& mark) { marks_.push_back(mark); }  ///< keeps a mark for settle(), or for the recording
   /// The method takes the marks outside of recordings; the device is done with them.
   void settle(const GpuDevice& device);
 
@@ -136,8 +125,7 @@ class ProfilePhase {
   bool on_;
 };
 
-/// The name of a kernel's type without namespaces and arguments. A wrapper bears the name of what it wraps, its
-/// `Named`.
+/// The name of a kernel's type without namespaces and arguments; of a wrapper that of what it wraps, its `Named`.
 template <class Kernel>
 std::string_view kernel_name() {
   if constexpr (requires { typename Kernel::Named; }) {

@@ -12,7 +12,6 @@
 
 namespace talus {
 
-/// The recording of work that repeats on one device.
 template <class Device>
 class Recording;
 
@@ -26,8 +25,7 @@ class Recording<CpuDevice> {
   void repeat(int times, const Body& body) {
     for (int t = 0; t < times; ++t) body();
   }
-  /// The method does nothing: there is no recording.
-  void forget() {}
+  void forget() {}  ///< does nothing: there is no recording
 };
 
 /// On a GPU work is recorded as a CUDA graph, and started as a whole from the second time on.
@@ -55,8 +53,7 @@ class Recording<GpuDevice> {
     if (!recorded_ && times > 0) record(body);
     for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
   }
-  /// The method gives up the recording, because arguments have changed.
-  void forget() { recorded_ = false; }
+  void forget() { recorded_ = false; }  ///< gives up the recording, because arguments have changed
 
  private:
   template <class Body>

@@ -25,12 +25,10 @@ struct KeepTotals {
   }
 };
 
-/// The memory of one device for partial sums.
 template <class Device>
 class SumSpace {
  public:
   explicit SumSpace(const Device& device) : partial_(device), ticket_(device) {}
-  /// The method returns memory for `count` partial sums.
   double* partial(int count) {
     partial_.resize(static_cast<std::size_t>(count));
     return partial_.data();
@@ -40,9 +38,7 @@ class SumSpace {
     if (ticket_.size() == 0) ticket_.upload({0u});
     return ticket_.data();
   }
-  /// The device whose memory it is.
-  const Device& device() const { return partial_.device(); }
-  /// The size of the memory [bytes].
+  const Device& device() const { return partial_.device(); }  ///< device whose memory it is
   std::size_t bytes() const { return partial_.bytes() + ticket_.bytes(); }
 
  private:
@@ -50,9 +46,8 @@ class SumSpace {
   Buffer<unsigned, Device> ticket_;
 };
 
-/// This function sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one
-/// thread. The order is fixed by `count` alone, so that a run repeats to the bit. A body may as well write what belongs
-/// to its index.
+/// Sums body(i), Terms<K>, for i in [0, count), and calls finish(const double* total) once, by one thread. The order is
+/// fixed by `count` alone, so that a run repeats to the bit. A body may as well write what belongs to its index.
 template <int K, class Body, class Finish>
 void sum_each(const CpuDevice& device, int count, SumSpace<CpuDevice>& space, const Body& body, const Finish& finish) {
   const KernelTime<CpuDevice> time(device, body, count);

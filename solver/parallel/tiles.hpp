@@ -226,8 +226,7 @@ __device__ __forceinline__ void add_together(const Kernel& kernel, const TileLan
   }
 }
 
-/// Adds the sums of a lane whose run of points ends to the nodes of its column, the lowest layer's alone where it
-/// climbs.
+/// Adds the sums of a lane whose run of points ends to the nodes of its column; where it climbs, the lowest layer's.
 template <int each, class Kernel>
 __device__ __forceinline__ void add_alone(const Kernel& kernel, const TileLane<each, Kernel>& at,
                                           TileMemory<each, Kernel>& memory, int source, bool climbs,

@@ -2,20 +2,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/plan/describe_plan.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
-#include "solver/options/solve.hpp"
-#include "solver/plan/inflow_words.hpp"
-#include "solver/plan/shaking_words.hpp"
-#include "solver/plan/trial.hpp"
 #include "solver/scene/make_scene.hpp"
+#include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
 namespace {
+
+/// Adds a line with a name in front.
+struct Adder {
+  std::vector<std::string>& lines;
+  void operator()(const std::string& name, const std::string& words) const {
+    lines.push_back(fmt::format("{:<12} {}", name, words));
+  }
+};
 
 std::string flow_words(const SolveOptions& o) {
   if (o.flow_integrator() == Integrator::explicit_) return fmt::format("explicit, {:g} of the CFL step", o.cfl);
@@ -37,13 +43,73 @@ std::string integrator_words(const SolveOptions& o) {
 
 }  // namespace
 
+Trial try_steps(const Plan& plan, const AnyDevice& device, double seconds) {
+  const Scene& scene = plan.scene;
+  const SolveOptions& o = plan.options;
+  const auto solver = make_solver(scene, o, device);
+  solver->set_next_event(o.end_time);
+  if (scene.points.size() == 0 && scene.inflow.any()) {  // steps of nothing say nothing
+    const ParticleState first = scene.inflow.points_of(scene.inflow.pulses.front());
+    solver->add(first, first_rate(scene.grid, solver->ground(), first, first_waves(o), 0));
+  }
+  const auto seconds_since = [](auto begun) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  };
+  solver->advance();  // storage, and on a GPU the first launch of every kernel
+  const auto first = solver->clock();
+  const auto begun = std::chrono::steady_clock::now();
+  Clock last = first;
+  while (seconds_since(begun) < seconds && last.time < o.end_time && !(last.alarms.halt == failed))
+    last = solver->advance().clock;
+  const double steps = static_cast<double>(last.step - first.step);
+  return {last.step_size, steps > 0 ? seconds_since(begun) / steps : 0, solver->bytes()};
+}
+
+StepCount count_steps(const Plan& plan, double trial_step) {
+  const SolveOptions& o = plan.options;
+  const double records = records_of(o);
+  StepCount count;
+  count.fewest = count.most = o.end_time / o.implicit.step + records;
+  if (!abilities_of(o.integrator).obey_cfl) return count;
+  count.speed = plan.bound.speed;
+  count.at_rest = explicit_step(plan.scene, o, 0);
+  count.at_speed = explicit_step(plan.scene, o, count.speed);
+  count.fewest = o.end_time / count.at_rest + records;
+  count.most = o.end_time / std::min(count.at_speed, trial_step > 0 ? trial_step : 1e30) + records;
+  return count;
+}
+
+std::string time_words(double seconds) {
+  if (seconds < 0.1) return "less than 0.1 s";
+  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+double records_of(const SolveOptions& o) {
+  const double per_second =
+      1 / o.frame_interval + 1 / o.history_interval + (o.checkpoint_interval > 0 ? 1 / o.checkpoint_interval : 0);
+  return o.end_time * per_second;
+}
+
+std::string inflow_words(const InflowSummary& i) {
+  return fmt::format(
+      "{}: {:.4g} m3 from {:g} to {:g} s; at its largest {:.4g} m3/s over {:.3g} m of the line, {:.3g} m deep, at "
+      "{:.3g} m/s (Froude number {:.2g})",
+      i.name, i.volume, i.from, i.to, i.peak, i.width, i.depth, i.speed, i.froude);
+}
+
+std::string shaking_words(const Shaking& shaking) {
+  const double begin = shaking.samples.front().time;
+  return fmt::format("{} samples from {:g} to {:g} s, up to {:.3g} m/s2 and {:.3g} m/s", shaking.samples.size(), begin,
+                     shaking.end(), shaking.peak_acceleration(), shaking.peak_velocity());
+}
+
 std::vector<std::string> features(const Plan& plan) {
   const Domain& domain = *plan.domain;
   const SolveOptions& o = plan.options;
   std::vector<std::string> lines;
-  const auto add = [&](const std::string& name, const std::string& words) {
-    lines.push_back(fmt::format("{:<12} {}", name, words));
-  };
+  const Adder add{lines};
   add("steps", integrator_words(o));
   add("grid", fmt::format("{}, {} functions, {}, {} precision",
                           o.mapping == Mapping::cartesian ? "Cartesian" : "terrain-following",
@@ -77,16 +143,13 @@ std::vector<std::string> features(const Plan& plan) {
 
 std::vector<std::string> describe_plan(const Plan& plan, const AnyDevice& device) {
   std::vector<std::string> lines = features(plan);
+  const Adder add{lines};
   const Scene& scene = plan.scene;
   const SolveOptions& o = plan.options;
-  if (scene.shaking.acts()) lines.push_back(fmt::format("{:<12} {}", "shaking", shaking_words(scene.shaking)));
-  for (const InflowSummary& inflow : scene.inflow.summaries)
-    lines.push_back(fmt::format("{:<12} {}", "inflow", inflow_words(inflow)));
+  if (scene.shaking.acts()) add("shaking", shaking_words(scene.shaking));
+  for (const InflowSummary& inflow : scene.inflow.summaries) add("inflow", inflow_words(inflow));
   for (const std::string& note : scene.contacts.notes) lines.push_back(note);
   const Trial trial = try_steps(plan, device, 0.5);
-  const auto add = [&](const std::string& name, const std::string& words) {
-    lines.push_back(fmt::format("{:<12} {}", name, words));
-  };
   const double volume = std::accumulate(scene.points.volume.begin(), scene.points.volume.end(), 0.0);
   const double cell = scene.grid.spacing * scene.grid.spacing * scene.grid.layer_height;
   add("points", scene.inflow.any() ? fmt::format("{}, {:.6g} m3; {} more enter", scene.points.size(), volume,

@@ -34,13 +34,12 @@ struct Mean {
   }
 };
 
-/// This function calls f(column, row) for every inner cell that lies below the energy line.
+/// Calls f(column, row) for every inner cell that lies below the energy line.
 template <class F>
 void each_cell_below(const EnergyLine& line, const Raster& terrain, F&& f) {
   for (int row = 1; row + 1 < terrain.grid.rows; ++row) {
-    for (int column = 1; column + 1 < terrain.grid.columns; ++column) {
+    for (int column = 1; column + 1 < terrain.grid.columns; ++column)
       if (line.head(terrain, column, row) > 0) f(column, row);
-    }
   }
 }
 
@@ -53,24 +52,21 @@ double EnergyLine::head(const Raster& terrain, int column, int row) const {
 
 double EnergyLine::largest_head(const Raster& terrain) const {
   double largest = 0;
-  for (int row = 0; row < terrain.grid.rows; ++row) {
+  for (int row = 0; row < terrain.grid.rows; ++row)
     for (int column = 0; column < terrain.grid.columns; ++column)
       largest = std::max(largest, head(terrain, column, row));  // NaN leaves it as it is
-  }
   return largest;
 }
 
 EnergyLine energy_line_of(const Domain& domain, const SolveOptions& options, const Inflow& inflow) {
   EnergyLine line{.friction = least_friction(options)};
-  for (int row = 0; row < domain.grid.rows; ++row) {
-    for (int column = 0; column < domain.grid.columns; ++column) {
-      const double thickness = domain.release_thickness.at(column, row), ground = domain.terrain.at(column, row);
-      if (!(thickness > 0) || !(ground + thickness > line.z)) continue;
-      line.x = domain.grid.x(column);
-      line.y = domain.grid.y(row);
-      line.z = ground + thickness;
-    }
-  }
+  each_cell(domain.grid, [&](int column, int row) {
+    const double thickness = domain.release_thickness.at(column, row), ground = domain.terrain.at(column, row);
+    if (!(thickness > 0) || !(ground + thickness > line.z)) return;
+    line.x = domain.grid.x(column);
+    line.y = domain.grid.y(row);
+    line.z = ground + thickness;
+  });
   const double g = options.gravity_size();
   for (const InflowTop& top : inflow.tops) {
     const double head = g > 0 ? top.z + top.speed * top.speed / (2 * g) : top.z;

@@ -21,8 +21,7 @@ struct EnergyLine {
   double largest_head(const Raster& terrain) const;
 };
 
-/// What bounds the speed of a flow: the energy line, the speed at the start and the shaking; and its depth at the
-/// start.
+/// What bounds the speed of a flow: energy line, speed at the start and shaking; and its depth at the start.
 struct SpeedBound {
   EnergyLine line;
   double fall = 0;   ///< that the energy line allows somewhere in the domain [m/s]

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace talus::solver {
@@ -77,7 +76,7 @@ void IntegratorChoice::begin_trial() {
   change_to(other());
 }
 
-/// The method ends a trial; it returns true when the trial's integrator stays.
+/// Ends a trial; it returns true when the trial's integrator stays.
 bool IntegratorChoice::end_trial() {
   trial_.under_way = false;
   trial_.work_since = 0;
@@ -103,7 +102,7 @@ bool IntegratorChoice::follow_trial(const BatchWork& batch) {
   return (is_hopeless || batches_ >= trial_steps) && !end_trial();
 }
 
-/// The method takes up a length of implicit steps that has become another one; it returns true where it has.
+/// Takes up a length of implicit steps that has become another one; it returns true where it has.
 bool IntegratorChoice::fit_step() {
   if (flows() || (step_.suitable <= 2 * step_.implicit && step_.suitable >= 0.5 * step_.implicit)) return false;
   step_.implicit = step_.suitable;

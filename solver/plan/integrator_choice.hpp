@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "solver/options/time.hpp"
+#include "solver/options/scheme.hpp"
 
 namespace talus::solver {
 
@@ -17,7 +17,6 @@ struct BatchWork {
   double speed = 0;      ///< of the fastest point [m/s]
 };
 
-/// The iterations or steps of a batch.
 struct BatchCount {
   long long steps = 0;   ///< steps of a flow
   long long newton = 0;  ///< Newton iterations, of attempts that failed too
@@ -39,7 +38,6 @@ class IntegratorChoice {
   IntegratorChoice(double cell, double largest_step, Integrator flow)
       : cell_(cell), largest_step_(largest_step), flow_(flow), current_(flow) {}
 
-  /// The integrator to run.
   Integrator current() const { return current_; }
   /// The length of implicit steps from here on: as long as nothing moves by more than a quarter of a cell [s].
   double implicit_step() const { return step_.implicit; }
@@ -47,7 +45,7 @@ class IntegratorChoice {
   /// The method counts the work of a batch. It returns true when the solver must be built anew: for the other
   /// integrator, or for implicit steps of another length.
   bool note(const BatchWork& batch);
-  /// The method goes back to steps of the flow after an implicit one that failed beyond rescue; `work`: what it took.
+  /// Goes back to steps of the flow after an implicit one that failed beyond rescue; `work`: what it took.
   void note_failure(double work);
 
   /// The decision since the last call, with its reason; empty when there was none.
@@ -56,7 +54,7 @@ class IntegratorChoice {
  private:
   struct Cost {
     double simulated = 0, work = 0;
-    /// The method adds a batch; `memory` is the weight that earlier ones keep [-].
+    /// Adds a batch; `memory` is the weight that earlier ones keep [-].
     void add(const BatchWork& batch, double memory);
     /// The work per simulated time [1/s]; 0 before the first batch.
     double rate() const { return simulated > 0 ? work / simulated : 0; }

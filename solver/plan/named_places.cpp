@@ -96,25 +96,11 @@ std::vector<Options> placed(const std::vector<Options>& list, const char* table,
   return all;
 }
 
-std::vector<SectionOptions> placed(const std::vector<SectionOptions>& sections, const std::vector<DomainPlace>& places,
-                                   std::vector<Fault>& faults) {
-  return placed(sections, "section", true, places, faults, [](const std::string& name, const DomainPlace& line) {
-    return SectionOptions{.name = name, .line = line.points};
-  });
-}
-
-std::vector<GaugeOptions> placed(const std::vector<GaugeOptions>& gauges, const std::vector<DomainPlace>& places,
-                                 std::vector<Fault>& faults) {
-  return placed(gauges, "gauge", false, places, faults, [](const std::string& name, const DomainPlace& point) {
-    return GaugeOptions{.name = name, .x = point.points[0][0], .y = point.points[0][1]};
-  });
-}
-
 /// Whether the points of a line lie on the way from its first to its last.
 bool is_straight(const MapLine& line) {
   const auto &a = line.front(), &b = line.back();
   const double x = b[0] - a[0], y = b[1] - a[1], squared = x * x + y * y;
-  return squared > 0 && std::all_of(line.begin(), line.end(), [&](const auto& point) {
+  return squared > 0 && std::ranges::all_of(line, [&](const auto& point) {
            const double along = ((point[0] - a[0]) * x + (point[1] - a[1]) * y) / squared;
            const double aside = ((point[1] - a[1]) * x - (point[0] - a[0]) * y) / squared;
            return along >= -crooked && along <= 1 + crooked && std::abs(aside) <= crooked;
@@ -144,7 +130,7 @@ void place_line(InflowOptions& o, std::size_t number, const std::vector<DomainPl
   o.place.clear();
 }
 
-/// This function adds a fault for every name that two items of a table have.
+/// Adds a fault for every name that two items of a table have.
 template <class Item>
 void find_doubles(const char* table, const std::vector<Item>& items, std::vector<Fault>& faults) {
   std::set<std::string> names;
@@ -157,8 +143,8 @@ void find_doubles(const char* table, const std::vector<Item>& items, std::vector
 
 template <class Item>
 bool asks(const std::vector<Item>& items, const std::string& place) {
-  return std::any_of(items.begin(), items.end(),
-                     [&](const Item& item) { return place.empty() ? !item.place.empty() : item.place == place; });
+  return std::ranges::any_of(
+      items, [&](const Item& item) { return place.empty() ? !item.place.empty() : item.place == place; });
 }
 
 /// Whether something of the options asks for a place; empty: for any.
@@ -171,8 +157,13 @@ bool asks(const SolveOptions& o, const std::string& place) {
 SolveOptions with_places(SolveOptions o, const std::vector<DomainPlace>& places) {
   if (!asks(o, "")) return o;
   std::vector<Fault> faults;
-  o.sections = placed(o.sections, places, faults);
-  o.gauges = placed(o.gauges, places, faults);
+  o.sections =
+      placed(o.sections, "section", true, places, faults, [](const std::string& name, const DomainPlace& line) {
+        return SectionOptions{.name = name, .line = line.points};
+      });
+  o.gauges = placed(o.gauges, "gauge", false, places, faults, [](const std::string& name, const DomainPlace& point) {
+    return GaugeOptions{.name = name, .x = point.points[0][0], .y = point.points[0][1]};
+  });
   for (std::size_t n = 0; n < o.inflows.size(); ++n)
     if (!o.inflows[n].place.empty()) place_line(o.inflows[n], n, places, faults);
   find_doubles("section", o.sections, faults);

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "solver/plan/checks.hpp"
 #include "solver/plan/step_choice.hpp"
-#include "solver/plan/stiffness.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What integrator = "auto" and `accuracy` settle before a run, from the scene alone.
+// What `accuracy`, integrator = "auto" and stiffness = "auto" settle before a run, from the scene alone
+// (docs/notes/integrators.md).
 #pragma once
 
 #include <string>
@@ -12,6 +13,30 @@
 
 namespace talus::solver {
 
+struct StiffnessDemand {
+  double modulus = 0;  ///< Young's modulus chosen [Pa]
+  std::string reason;
+};
+
+/// The modulus that keeps the dynamic pressure at the highest speed to a strain of `stiffness_strain`, and the weight
+/// below the highest point of what is released to half of that, or to half of the recipe's `accuracy` where that is
+/// less: what weight strains is missing in the thickness of the deposit. Never more than the recipe's own. Pressures
+/// are over the modulus of confined compression.
+StiffnessDemand lowest_stiffness(const SolveOptions& options, const SpeedBound& bound);
+
+/// The strain by which `stiffness = "auto"` goes at an accuracy: sqrt(strain) grows with the share of the deposit that
+/// lies elsewhere (docs/notes/integrators.md).
+double strain_for(double accuracy);
+
+/// The options with `stiffness = "auto"` carried out.
+SolveOptions with_stiffness(SolveOptions options, const StiffnessDemand& demand);
+
+/// Whether a recipe leaves the stiffness to the program, by its own word or by `accuracy`.
+bool leaves_stiffness(const SolveOptions& options);
+
+/// The same with what `accuracy` says of it. A line on the modulus is added to `reasons`.
+SolveOptions settle_stiffness(SolveOptions options, const SpeedBound& bound, std::vector<std::string>& reasons);
+
 /// The steps of a flow, and why they are taken.
 struct StepChoice {
   Integrator flow = Integrator::explicit_;  ///< explicit or column-implicit
@@ -20,8 +45,7 @@ struct StepChoice {
   std::vector<std::string> reasons;         ///< a sentence each
 };
 
-/// The steps that take the least work at the accuracy asked for, of those that the scene allows; without one, at the
-/// recipe's own `cfl`.
+/// The allowed steps that take the least work at the accuracy asked for; without one, at the recipe's own `cfl`.
 StepChoice choose_steps(const Domain& domain, const SolveOptions& options, const SpeedBound& bound);
 
 /// Warns of an `accuracy` that no steps keep, on ground that is rough for the flow (docs/notes/integrators.md).

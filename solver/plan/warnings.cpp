@@ -9,11 +9,9 @@
 
 #include "common/stage/findings.hpp"
 #include "solver/boundary/base_friction.hpp"
-#include "solver/plan/checks.hpp"
-#include "solver/plan/inflow_words.hpp"
 #include "solver/plan/plan.hpp"
-#include "solver/plan/shaking_words.hpp"
 #include "solver/plan/step_choice.hpp"
+#include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
 namespace {
@@ -54,17 +52,7 @@ double bed_friction(const Domain& domain, const SolveOptions& o) {
   const double depth = abilities_of(o.integrator).obey_cfl ? 0 : thickness(domain), density = o.material.density;
   if (domain.bed.empty()) return most_asked(friction, density, depth);
   double most = 0;
-  SolveOptions here = o;
-  std::vector<double*> numbers;
-  for (const auto& [name, raster] : domain.bed) numbers.push_back(here.base.named(name));
-  for (std::size_t column = 0; column < domain.grid.count(); ++column) {
-    here.base = o.base;
-    for (std::size_t n = 0; n < numbers.size(); ++n) {
-      const double value = domain.bed[n].second.values[column];
-      if (numbers[n] && std::isfinite(value)) *numbers[n] = value;
-    }
-    most = std::max(most, most_asked(make_base_friction<double>(here), density, depth));
-  }
+  each_bed(domain, o, [&](const auto& here) { most = std::max(most, most_asked(here, density, depth)); });
   return most;
 }
 
@@ -113,13 +101,11 @@ double released_alone(const Domain& domain) {
     return i >= 0 && j >= 0 && i < release.grid.columns && j < release.grid.rows && release.at(i, j) > 0;
   };
   double alone = 0, all = 0;
-  for (int j = 0; j < release.grid.rows; ++j) {
-    for (int i = 0; i < release.grid.columns; ++i) {
-      if (!filled(i, j)) continue;
-      all += release.at(i, j);
-      if (!filled(i - 1, j) && !filled(i + 1, j) && !filled(i, j - 1) && !filled(i, j + 1)) alone += release.at(i, j);
-    }
-  }
+  each_cell(release.grid, [&](int i, int j) {
+    if (!filled(i, j)) return;
+    all += release.at(i, j);
+    if (!filled(i - 1, j) && !filled(i + 1, j) && !filled(i, j - 1) && !filled(i, j + 1)) alone += release.at(i, j);
+  });
   return all > 0 ? alone / all : 0;
 }
 
@@ -138,7 +124,49 @@ void warn_of_lone_columns(const Domain& domain, const SolveOptions& o) {
        {{"share", share, "1"}});
 }
 
+/// The final velocity of the ground, over its largest, from which an accelerogram is said not to end at rest [-]. What
+/// is left of drift in corrected records is far smaller.
+constexpr double most_final_velocity = 0.05;
+
 }  // namespace
+
+void warn_of_inflows(const Scene& scene, const SolveOptions& options) {
+  for (const InflowSummary& i : scene.inflow.summaries) {
+    if (i.late_volume > 0)
+      warn("inflow-cut-off",
+           fmt::format("[[solve.inflow]] name = \"{}\": the run ends at {:g} s, before {:.4g} m3 of its "
+                       "hydrograph have entered. Give a larger end_time_s, unless it is meant so",
+                       i.name, options.end_time, i.late_volume),
+           {{"late_volume", i.late_volume, "m3"}});
+    if (i.depth < 0.5 * scene.grid.layer_height)
+      warn("thin-inflow",
+           fmt::format("[[solve.inflow]] name = \"{}\": it enters {:.3g} m deep at most, less than half a "
+                       "layer of {:g} m. Give a smaller layer_height_m in [preprocess.grid], or let it in "
+                       "slower or through a shorter line",
+                       i.name, i.depth, scene.grid.layer_height),
+           {{"depth", i.depth, "m"}});
+  }
+}
+
+void warn_of_shaking(const Shaking& shaking, const SolveOptions& o) {
+  if (!shaking.acts()) return;
+  if (o.end_time < shaking.end())
+    warn("shaking-cut-off",
+         fmt::format(
+             "[solve.shaking] the run ends at {:g} s and the accelerogram at {:g} s: its last {:g} s do not act. "
+             "Give end_time_s = {:g} or more",
+             o.end_time, shaking.end(), shaking.end() - o.end_time, shaking.end()),
+         {{"end_of_shaking", shaking.end(), "s"}});
+  const double last = length(shaking.samples.back().velocity), most = shaking.peak_velocity();
+  if (last > most_final_velocity * most)
+    warn("ground-moves-on",
+         fmt::format(
+             "[solve.shaking] at the end of the accelerogram the ground still moves at {:.3g} m/s, {:.0f} % of its "
+             "largest velocity, and goes on so: the mass has got that much more than from ground that comes to "
+             "rest. Correct the record's baseline, unless it is meant so",
+             last, 100 * last / most),
+         {{"final_velocity", last, "m s-1"}, {"largest_velocity", most, "m s-1"}});
+}
 
 void warn_of_plan(const Plan& plan) {
   const Domain& domain = *plan.domain;

@@ -3,21 +3,28 @@
 #include "solver/run/run_loop.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "solver/parallel/device.hpp"
-#include "solver/parallel/profile.hpp"
-#include "solver/run/gravity_loading.hpp"
-#include "solver/run/products.hpp"
-#include "solver/run/progress.hpp"
-#include "solver/run/sanity.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
-
 namespace {
+
+/// The loaded strains go to the points of the start, which are in another order, as far as their law keeps them.
+void take_strains(const ParticleState& loaded, const SolveOptions& options, ParticleState& start) {
+  for (std::size_t q = 0; q < loaded.size(); ++q) {
+    const auto p = static_cast<std::size_t>(loaded.id[q]);
+    const int material = start.material[p];
+    const MaterialOptions& own =
+        material > 0 ? options.parts[static_cast<std::size_t>(material) - 1].material : options.material;
+    const auto& e = loaded.elastic;
+    const Sym3<double> kept = after_loading(own.model, {e[0][q], e[1][q], e[2][q], e[3][q], e[4][q], e[5][q]});
+    const double values[6] = {kept.xx, kept.yy, kept.zz, kept.xy, kept.yz, kept.xz};
+    for (std::size_t a = 0; a < 6; ++a) start.elastic[a][p] = values[a];
+    start.log_volume[p] = loaded.log_volume[q];
+  }
+}
 
 std::vector<double> times_of(const Inflow& inflow) {
   std::vector<double> times;
@@ -26,6 +33,48 @@ std::vector<double> times_of(const Inflow& inflow) {
 }
 
 }  // namespace
+
+Schedule::Schedule(const SolveOptions& options, std::vector<double> pulses)
+    : frame_interval_(options.frame_interval),
+      record_interval_(options.history_interval),
+      checkpoint_interval_(options.checkpoint_interval),
+      end_time_(options.end_time),
+      pulses_(std::move(pulses)) {
+  for (const WallOptions& wall : options.walls) changes_.push_back(wall.to);
+  for (const LoadOptions& load : options.loads) changes_.insert(changes_.end(), {load.from, load.to});
+  if (options.shaking.acts()) changes_.push_back(options.shaking.start);
+}
+
+double Schedule::next_event(double time, const RunMemory& passed) const {
+  double next =
+      std::min({at_count(passed.frames, frame_interval_), at_count(passed.records, record_interval_), end_time_});
+  for (const double change : changes_)
+    if (change > just_after(time)) next = std::min(next, change);
+  if (expects_pulses(passed)) next = std::min(next, pulses_[static_cast<std::size_t>(passed.pulses)]);
+  return just_after(next) >= end_time_ ? end_time_ : next;
+}
+
+ParticleState loaded_by_gravity(const Scene& scene, const SolveOptions& options, const AnyDevice& device) {
+  Scene resting = scene;
+  resting.shaking = {};
+  for (auto& component : resting.points.velocity) std::fill(component.begin(), component.end(), 0.0);
+  const SolverSettings settings = make_settings(options, resting.grid);
+  const auto loader = make_solver(resting, for_gravity_loading(settings, options.gravity_loading_steps), device);
+  loader->set_next_event(1);
+  log_info(fmt::format("gravity is brought on first, in {} steps at least", options.gravity_loading_steps));
+  std::int64_t newton = 0, linear = 0;
+  while (loader->clock().time < 1) {
+    stop_if_interrupted("bringing on gravity");
+    const BatchReport batch = loader->advance();
+    newton += batch.stats.newton;
+    linear += batch.stats.linear;
+  }
+  ParticleState start = scene.points;
+  take_strains(loader->state().points, options, start);
+  log_info(fmt::format("gravity loading: {} steps, {} Newton and {} linear iterations", loader->clock().step, newton,
+                       linear));
+  return start;
+}
 
 RunLoop::RunLoop(std::shared_ptr<const Plan> plan, const AnyDevice& device, HistoryUse use)
     : plan_(std::move(plan)),
@@ -64,11 +113,14 @@ std::string RunLoop::step_to_end(RunKeeper& keeper, bool fresh) {
       reason = fmt::format("kinetic energy below {:g} of its peak", options().stop_kinetic_fraction);
       break;
     }
-    if (left_empty()) {
+    if (stepper_.solver().particle_count() == 0 && !schedule_.expects_pulses(memory_)) {
       reason = "all material left the domain";
       break;
     }
-    if (can_be_saved) pass_whole_state(keeper);
+    if (!can_be_saved) continue;
+    const bool due = schedule_.checkpoint_due(stepper_.time(), memory_);
+    if (due) ++memory_.checkpoints;
+    keeper.pass_whole_state(due);
   }
   if (stopped_) reason = "stopped by the caller";
   if (schedule_.ends_between_frames(stepper_.time(), memory_)) put_frame(stepper_.time(), keeper);
@@ -85,16 +137,6 @@ bool RunLoop::let_in(double time) {
     ++memory_.pulses;
   }
   return memory_.pulses > before;
-}
-
-void RunLoop::pass_whole_state(RunKeeper& keeper) {
-  const bool due = schedule_.checkpoint_due(stepper_.time(), memory_);
-  if (due) ++memory_.checkpoints;
-  keeper.pass_whole_state(due);
-}
-
-bool RunLoop::left_empty() const {
-  return stepper_.solver().particle_count() == 0 && !schedule_.expects_pulses(memory_);
 }
 
 void RunLoop::count(const BatchReport& batch) {

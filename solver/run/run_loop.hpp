@@ -4,25 +4,70 @@
 #pragma once
 
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "solver/parallel/any_device.hpp"
+#include "common/stage/stage.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/plan/plan.hpp"
 #include "solver/run/products.hpp"
-#include "solver/run/recorders/checkpoint.hpp"
 #include "solver/run/recorders/history.hpp"
-#include "solver/run/schedule.hpp"
-#include "solver/run/step_watch.hpp"
 #include "solver/run/stepper.hpp"
 
 namespace talus::solver {
 
+/// The events of a run in simulated time, from the recipe. RunMemory keeps how many have passed.
+class Schedule {
+ public:
+  /// `pulses`: the times at which material enters, in order [s].
+  explicit Schedule(const SolveOptions& options, std::vector<double> pulses = {});
+
+  /// The next time after `time` that no step may go over [s]: a frame, a record, a wall or load that comes or goes, a
+  /// pulse that enters, the end.
+  double next_event(double time, const RunMemory& passed) const;
+  /// Whether a row of the history is due at `time` [s].
+  bool record_due(double time, const RunMemory& passed) const {
+    return just_after(time) >= at_count(passed.records, record_interval_) || time >= end_time_;
+  }
+  /// Whether a frame is due at `time` [s].
+  bool frame_due(double time, const RunMemory& passed) const {
+    return just_after(time) >= at_count(passed.frames, frame_interval_);
+  }
+  /// Whether a checkpoint is due at `time` [s].
+  bool checkpoint_due(double time, const RunMemory& passed) const {
+    return checkpoint_interval_ > 0 && time >= at_count(passed.checkpoints + 1, checkpoint_interval_);
+  }
+  bool ends_between_frames(double time, const RunMemory& passed) const {
+    return time > just_after(at_count(passed.frames - 1, frame_interval_));
+  }
+  /// Whether the next pulse of the inflows is due at `time` [s].
+  bool pulse_due(double time, const RunMemory& passed) const {
+    return expects_pulses(passed) && just_after(time) >= pulses_[static_cast<std::size_t>(passed.pulses)];
+  }
+  bool expects_pulses(const RunMemory& passed) const { return passed.pulses < std::ssize(pulses_); }
+  double end_time() const { return end_time_; }  ///< [s]
+
+ private:
+  /// The time from which an event counts as a later one: events a rounding apart are one, for no step may be asked to
+  /// go from one to the other.
+  static double just_after(double time) { return time * (1 + 1e-12); }
+  static double at_count(std::int64_t count, double interval) { return static_cast<double>(count) * interval; }
+
+  double frame_interval_, record_interval_, checkpoint_interval_, end_time_;  ///< [s]
+  std::vector<double> changes_;                                               ///< of walls and loads [s]
+  std::vector<double> pulses_;                                                ///< of inflows [s]
+};
+
+/// The points of a scene with the elastic state of the mass at rest under its own weight, held at its bed, after
+/// `gravity_loading_steps` quasi-static steps. Throws NumericalError when a step does not converge.
+ParticleState loaded_by_gravity(const Scene& scene, const SolveOptions& options, const AnyDevice& device);
+
 /// The wall time of a run, that before an interruption included.
 class RunTimer {
  public:
-  /// The method starts the clock.
-  void start() { started_ = WallClock::now(); }
+  void start() { started_ = WallClock::now(); }     ///< starts the clock
   void resume(double before) { before_ = before; }  ///< before: the wall time so far [s]
   /// The wall time so far [s].
   double seconds() const { return before_ + std::chrono::duration<double>(WallClock::now() - started_).count(); }
@@ -41,15 +86,13 @@ class RunKeeper {
   virtual void put_frame(double time, std::int64_t number) = 0;
   /// The history has a record at `time` [s]. The run ends here where the method returns false.
   virtual bool pass_record(double /*time*/) { return true; }
-  /// A batch of steps has been taken.
-  virtual void pass_batch(const BatchReport& batch) = 0;
+  virtual void pass_batch(const BatchReport& batch) = 0;  ///< a batch of steps has been taken
   /// There are more steps to take, and a run can go on from the state as it is: it may be written down, and the run
   /// stopped by an exception. `checkpoint_due`: the recipe asks for a checkpoint here.
   virtual void pass_whole_state(bool checkpoint_due) = 0;
 };
 
-/// The loop of a run, and the numbers that it records. Two loops of the same domain and options take the same steps,
-/// whoever keeps them.
+/// The loop of a run, and the numbers that it records. Loops of the same domain and options take the same steps.
 class RunLoop {
  public:
   /// The constructor prepares the recorders; no step is taken. It throws RecipeError.
@@ -57,10 +100,8 @@ class RunLoop {
   RunLoop(const RunLoop&) = delete;
   RunLoop& operator=(const RunLoop&) = delete;
 
-  /// The method begins at the start of the scene.
-  void start();
-  /// The method goes on from a checkpoint's state.
-  void resume(const SolverState& state, RunMemory memory);
+  void start();                                             ///< begins at the start of the scene
+  void resume(const SolverState& state, RunMemory memory);  ///< goes on from a checkpoint's state
   /// The method steps to the end and returns why it stopped; `fresh`: from the start, whose events are passed first. It
   /// throws NumericalError, and what the keeper throws.
   std::string step_to_end(RunKeeper& keeper, bool fresh);
@@ -73,19 +114,14 @@ class RunLoop {
   const History& history() const { return history_; }
   const RunMemory& memory() const { return memory_; }
   RunMemory& memory() { return memory_; }
-  /// The time at which the run ends at the latest [s].
-  double end_time() const { return schedule_.end_time(); }
-  /// The error of the mass by the last record, over the volume of the first [-].
-  double mass_error() const;
-  /// The end of the run; it refers to this loop and to `state`.
-  RunEnd end(const SolverState& state) const;
+  double end_time() const { return schedule_.end_time(); }  ///< time at which the run ends at the latest [s]
+  double mass_error() const;  ///< error of the mass by the last record, over the volume of the first [-]
+  RunEnd end(const SolverState& state) const;  ///< end of the run; it refers to this loop and to `state`
   /// The method adds to a summary what this run tells of itself at its end.
   void measure(const RunEnd& end, RunSummary& summary) const;
 
  private:
   bool let_in(double time);
-  void pass_whole_state(RunKeeper& keeper);
-  bool left_empty() const;
   void count(const BatchReport& batch);
   void pass_events(double time, RunKeeper& keeper);
   void record(double time, RunKeeper& keeper);

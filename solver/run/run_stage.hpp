@@ -1,19 +1,23 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// talus-solve for a run in time: domain.vdb -> run.h5.
+// talus-solve for a run in time: domain.vdb -> run.h5; with --profile phases, kernels, memory by owner.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/parallel/any_device.hpp"
 #include "solver/run/simulation.hpp"
 
 namespace talus::solver {
+
+/// A row for every kernel: kernel, phase, calls, seconds, bytes it has to move (each read or written once; empty where
+/// that is not known), share of the copy's bandwidth.
+std::string profile_csv(const Profile& profile, double copy);
 
 /// What the command line says of a run.
 struct RunFlags {
@@ -23,12 +27,8 @@ struct RunFlags {
   bool plan = false;                                  ///< say what would run, and run nothing
 };
 
-/// The checkpoint that the flags go on from; none where they begin.
-std::optional<std::filesystem::path> checkpoint_of(const RunFlags& flags, const std::filesystem::path& out);
-
-/// This function runs a plan and writes its results. It adds to the context's results and returns the facts for the
-/// used recipe, none where nothing ran. It throws NumericalError, Interrupted with a checkpoint left behind,
-/// RecipeError and DataError.
+/// Runs a plan and writes its results. It adds to the context's results and returns the facts for the used recipe, none
+/// where nothing ran. It throws NumericalError, Interrupted with a checkpoint left behind, RecipeError and DataError.
 Facts run_in_time(StageContext& context, const RunFlags& flags, const std::shared_ptr<const Plan>& plan,
                   const AnyDevice& device);
 
@@ -38,8 +38,5 @@ void take_up(Simulation& simulation, const RunFlags& flags, const RunPaths& path
 
 /// This function adds the findings of the domain and of a plan to those of the calling thread.
 void add_findings_of(const Plan& plan);
-
-/// What the used recipe says of a run that is whole.
-Facts facts_of(const RunSummary& summary);
 
 }  // namespace talus::solver

@@ -2,17 +2,75 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/run/simulation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "solver/run/products.hpp"
-#include "solver/run/progress.hpp"
-#include "solver/run/recorders/check_checkpoint.hpp"
-#include "solver/run/recorders/frame_store.hpp"
-#include "solver/run/sanity.hpp"
+#include "common/stage/checksum.hpp"
 
 namespace talus::solver {
+
+SolveOptions options_of(const recipe::Recipe& recipe, const std::filesystem::path& out) {
+  SolveOptions options = with_preset(recipe.read<SolveOptions>("solve"));
+  for (ObstacleOptions& obstacle : options.obstacles) {
+    if (obstacle.body || !obstacle.level_set.empty()) continue;
+    obstacle.level_set = out / "obstacles.vdb";
+    if (obstacle.grid.empty()) obstacle.grid = obstacle.name;
+  }
+  return options;
+}
+
+std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const std::filesystem::path& out) {
+  std::vector<std::filesystem::path> inputs{options.domain.empty() ? out / "domain.vdb" : options.domain};
+  for (const ObstacleOptions& obstacle : options.obstacles)
+    if (std::find(inputs.begin(), inputs.end(), obstacle.level_set) == inputs.end())
+      inputs.push_back(obstacle.level_set);
+  for (const InflowOptions& inflow : options.inflows)
+    if (!inflow.file.empty()) inputs.push_back(inflow.file);
+  if (options.shaking.acts()) inputs.push_back(options.shaking.file);
+  return inputs;
+}
+
+std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptions& options) {
+  std::string fingerprint = checksum_as_read(domain) + "\n" + recipe::to_toml(options, "solve", false);
+  for (const ObstacleOptions& obstacle : options.obstacles) fingerprint += sha256(obstacle.level_set) + "\n";
+  for (const InflowOptions& inflow : options.inflows)
+    if (!inflow.file.empty()) fingerprint += sha256(inflow.file) + "\n";
+  if (options.shaking.acts()) fingerprint += sha256(options.shaking.file) + "\n";
+  return fingerprint;
+}
+
+Facts made_by(const StageContext& context, const SolveOptions& o) {
+  Facts facts{{recipe_of_run, recipe_mark(context.recipe, "solve")}};
+  for (std::size_t n = 0; n < o.inflows.size(); ++n)
+    if (!o.inflows[n].file.empty())
+      facts.emplace_back("hydrograph." + inflow_name(o.inflows[n], n) + ".sha256", sha256(o.inflows[n].file));
+  if (o.shaking.acts()) facts.emplace_back(shaking_checksum, sha256(o.shaking.file));
+  return facts;
+}
+
+void judge_inputs(const StageContext& context, const SolveOptions& o, const std::filesystem::path& file,
+                  const Domain& domain) {
+  judge_maker(context.recipe, {.file = file,
+                               .table = "preprocess",
+                               .mark = fact(domain.provenance, recipe_of_domain),
+                               .program = "talus-preprocess",
+                               .key = "domain in [solve]",
+                               .named = !o.domain.empty()});
+  const std::string written = fact(domain.provenance, obstacles_checksum);
+  const auto bodies = context.out / "obstacles.vdb";
+  const auto reads = [&](const ObstacleOptions& obstacle) { return obstacle.level_set == bodies; };
+  if (!written.empty() && std::filesystem::exists(bodies) &&
+      std::any_of(o.obstacles.begin(), o.obstacles.end(), reads)) {
+    if (const std::string found = sha256(bodies); found != written)
+      throw DataError(
+          {bodies.string() + ": not the file that was written with " + file.string(),
+           fmt::format("its SHA-256 is {:.16}..., that of the file written with it {:.16}...", found, written),
+           "Run talus-preprocess again"});
+  }
+}
+
 void remove_leftovers(const RunPaths& paths) {
   remove_for_good(paths.checkpoint);
   FrameStore(paths.frames).clear();
@@ -38,18 +96,16 @@ void Simulation::resume(const std::filesystem::path& file) {
                        checkpoint.state.clock.step));
 }
 
-void Simulation::start() {
-  marks_.id = new_run_id();
-  frames_.belong_to(marks_.id);
-  loop_.start();
-}
-
 RunSummary Simulation::run(const std::string& scene, const std::string& title, const std::optional<Facts>& facts,
                            const std::optional<std::vector<Finding>>& findings) {
   const Findings found("solve", loop_.options().accept);
   timer_.start();
   const bool fresh = !loop_.stepper().begun();
-  if (fresh) start();
+  if (fresh) {
+    marks_.id = new_run_id();
+    frames_.belong_to(marks_.id);
+    loop_.start();
+  }
   const OwnEnd saving("the state is saved at the next step that allows it");
   timer_.start();
   if (marks_.stop_reason.empty()) {
@@ -68,8 +124,6 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title, c
   return finish(std::move(summary), found);
 }
 
-void Simulation::put_frame(double time, std::int64_t number) { frames_.put(time, number, loop_.stepper().solver()); }
-
 void Simulation::pass_whole_state(bool checkpoint_due) {
   const bool stopped = interrupted();
   if (checkpoint_due || stopped) save_checkpoint();
@@ -79,13 +133,6 @@ void Simulation::pass_whole_state(bool checkpoint_due) {
 void Simulation::pass_batch(const BatchReport& batch) {
   if (progress_ && progress_->due())
     progress_->update(progress_line(batch.clock, {loop_.end_time(), loop_.mass_error(), timer_.seconds()}));
-}
-
-/// The run file of many points takes long to write. The checkpoint says that there is no step left to take.
-void Simulation::stop_if_interrupted_at_the_end() {
-  if (!interrupted()) return;
-  save_checkpoint();
-  stop();
 }
 
 void Simulation::stop() {
@@ -125,7 +172,10 @@ void Simulation::write_run(const RunEnd& end, const RunSummary& summary) {
   frames_.settle();
   RunWriter writer(paths_.run);
   for (std::int64_t number = 0; number < loop_.memory().frames; ++number) {
-    stop_if_interrupted_at_the_end();
+    if (interrupted()) {  // the file of many points takes long; the checkpoint says that no step is left
+      save_checkpoint();
+      stop();
+    }
     frames_.append_to(writer, number);
   }
   writer.finish(final_maps(end, loop_.stepper().solver().thickness()), loop_.history().rows(), summary);

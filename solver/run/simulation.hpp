@@ -1,22 +1,43 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run from domain to run.h5: steps, events in time, the end.
+// A run from domain to run.h5: the files that it is made of, the marks by which its own files know them, its steps and
+// its end.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "common/domain/domain.hpp"
+#include "common/recipe/recipe.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
-#include "common/stage/interrupt.hpp"
+#include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/parallel/any_device.hpp"
+#include "solver/options/solve.hpp"
 #include "solver/run/recorders/frames.hpp"
 #include "solver/run/run_loop.hpp"
 
 namespace talus::solver {
+
+/// The options of a recipe with its preset; obstacles without a level set of their own are those in the output of
+/// talus-preprocess. Throws RecipeError.
+SolveOptions options_of(const recipe::Recipe& recipe, const std::filesystem::path& out);
+
+/// The files that a run reads: the domain first, then the level sets of obstacles, then the accelerogram.
+std::vector<std::filesystem::path> inputs_of(const SolveOptions& options, const std::filesystem::path& out);
+
+/// What identifies the work of a run: a checkpoint of other inputs or settings is not taken up.
+std::string fingerprint_of(const std::filesystem::path& domain, const SolveOptions& options);
+
+/// What goes into the results beside the facts of the domain: mark of the recipe, checksums of other inputs.
+Facts made_by(const StageContext& context, const SolveOptions& options);
+
+/// This function refuses a domain that another recipe made, and level sets that were not written with it.
+void judge_inputs(const StageContext& context, const SolveOptions& options, const std::filesystem::path& file,
+                  const Domain& domain);
 
 /// The files of a run in its output folder.
 struct RunPaths {
@@ -54,11 +75,9 @@ class Simulation : private RunKeeper {
                  const std::optional<std::vector<Finding>>& findings = {});
 
  private:
-  void put_frame(double time, std::int64_t number) override;
+  void put_frame(double time, std::int64_t number) override { frames_.put(time, number, loop_.stepper().solver()); }
   void pass_batch(const BatchReport& batch) override;
   void pass_whole_state(bool checkpoint_due) override;
-  void start();
-  void stop_if_interrupted_at_the_end();
   [[noreturn]] void stop();
   void save_checkpoint();
   RunSummary finish(RunSummary summary, const Findings& found);

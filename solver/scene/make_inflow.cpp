@@ -11,11 +11,6 @@
 
 #include "common/error.hpp"
 #include "common/stage/machine.hpp"
-#include "solver/scene/hydrograph.hpp"
-#include "solver/scene/inflow_line.hpp"
-#include "solver/scene/inflow_pulses.hpp"
-#include "solver/scene/inflow_section.hpp"
-#include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
 namespace {
@@ -83,15 +78,7 @@ Entrance entrance_of(const Domain& domain, const SolveOptions& options, std::siz
   return {place, std::move(hydrograph), std::move(line), std::move(section), std::move(summary)};
 }
 
-/// The elevation of the lowest ground [m], from which heights of sections are measured.
-double lowest_ground(const Domain& domain) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const double z : domain.terrain.values)
-    if (std::isfinite(z)) lowest = std::min(lowest, z);
-  return lowest;
-}
-
-/// This function refuses more points than can be.
+/// Refuses more points than can be.
 void require_countable(const Entrance& e, const InflowOptions& o, std::size_t pulses, const Domain& domain) {
   const double cells = e.line.ground.strip * static_cast<double>(e.line.middles.size()) / domain.grid.cell *
                        std::max(1.0, e.summary.depth / domain.layer_height);
@@ -105,12 +92,15 @@ void require_countable(const Entrance& e, const InflowOptions& o, std::size_t pu
 
 /// The top of an inflow over the deepest place of its line.
 InflowTop top_of(const Entrance& e, const Domain& domain) {
+  double lowest = std::numeric_limits<double>::infinity();  // ground, from which heights of sections are measured [m]
+  for (const double z : domain.terrain.values)
+    if (std::isfinite(z)) lowest = std::min(lowest, z);
   const auto& height = e.line.ground.height;
   const auto deepest = static_cast<std::size_t>(std::min_element(height.begin(), height.end()) - height.begin());
   const CellPlace& at = e.line.middles[deepest];
   return {.x = domain.grid.west + (at[0] + 0.5) * domain.grid.cell,
           .y = domain.grid.south + (at[1] + 0.5) * domain.grid.cell,
-          .z = lowest_ground(domain) + height[deepest] + e.summary.depth,
+          .z = lowest + height[deepest] + e.summary.depth,
           .speed = e.summary.speed};
 }
 
@@ -147,8 +137,7 @@ Inflow merged(const std::vector<Inflow>& all, std::size_t seeded) {
     merged.summaries.insert(merged.summaries.end(), one.summaries.begin(), one.summaries.end());
     merged.tops.insert(merged.tops.end(), one.tops.begin(), one.tops.end());
   }
-  std::stable_sort(turns.begin(), turns.end(),
-                   [](const Turn& a, const Turn& b) { return a.pulse->time < b.pulse->time; });
+  std::ranges::stable_sort(turns, [](const Turn& a, const Turn& b) { return a.pulse->time < b.pulse->time; });
   for (const auto& [from, pulse] : turns) {
     InflowPulse own = *pulse;
     own.first = merged.points.size();

@@ -2,15 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/scene/make_scene.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
 #include "solver/scene/make_inflow.hpp"
-#include "solver/scene/place_in_cells.hpp"
-#include "solver/scene/read_shaking.hpp"
 #include "solver/scene/settings.hpp"
+#include "solver/scene/tables.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,7 +20,7 @@ namespace {
 /// no mass moves as it likes in a material without tension, and hands the point next to it a spin out of all measure.
 constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
 
-/// This function marks the points that start inside a load's box.
+/// Marks the points that start inside a load's box.
 void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
   for (std::size_t l = 0; l < options.loads.size(); ++l) {
     const auto& b = options.loads[l].extent;
@@ -35,16 +31,14 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
       scene.points.load[p] = static_cast<int>(l);
       volume += domain.points.volume[p];
     }
-    if (!(volume > 0)) {
+    if (!(volume > 0))
       faults.push_back({fmt::format("[[solve.load]] number {}: no material point starts inside its box", l + 1),
                         "the load would pull at nothing",
                         "Widen extent_m (west, south, east, north, bottom, top above the ground)"});
-    }
     scene.load_volumes.push_back(volume);
   }
 }
 
-/// This function gives the points of each part its material.
 void attach_materials(const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
   for (std::size_t part = 0; part < options.parts.size(); ++part) {
     const std::string& name = options.parts[part].release;
@@ -62,7 +56,7 @@ void attach_materials(const SolveOptions& options, Scene& scene, std::vector<Fau
   }
 }
 
-/// This function refuses an inflow of the name of a release: results are told apart by name.
+/// Refuses an inflow of the name of a release: results are told apart by name.
 void check_release_names(const Scene& scene, std::vector<Fault>& faults) {
   const auto& names = scene.release_names;
   for (std::size_t n = names.size() - scene.inflow.summaries.size(); n < names.size(); ++n) {
@@ -76,23 +70,13 @@ void check_release_names(const Scene& scene, std::vector<Fault>& faults) {
 
 /// The bed where domain.vdb has rasters of it: their values, the recipe's elsewhere.
 std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& options) {
-  if (domain.bed.empty()) return {};
   std::vector<Bed<double>> bed;
-  SolveOptions here = options;
-  std::vector<double*> numbers;
-  for (const auto& [name, raster] : domain.bed) numbers.push_back(here.base.named(name));
-  for (std::size_t column = 0; column < domain.grid.count(); ++column) {
-    here.base = options.base;
-    for (std::size_t n = 0; n < numbers.size(); ++n) {
-      const double value = domain.bed[n].second.values[column];
-      if (numbers[n] && std::isfinite(value)) *numbers[n] = value;
-    }
-    bed.push_back(make_base_friction<double>(here).uniform);
-  }
+  if (domain.bed.empty()) return bed;
+  each_bed(domain, options, [&](const BaseFriction<double>& friction) { bed.push_back(friction.uniform); });
   return bed;
 }
 
-/// This function refuses rasters that the law does not look at, which are a mistake in the recipe.
+/// Refuses rasters that the law does not look at, which are a mistake in the recipe.
 void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fault>& faults) {
   for (const auto& [name, raster] : domain.bed) {
     if (options.base.uses(name)) continue;
@@ -102,18 +86,16 @@ void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fa
   }
 }
 
-/// This function throws DataError unless a point lies over known ground, and in an active cell of the grid that was
-/// made for it.
+/// Throws DataError unless a point lies over known ground, and in an active cell of the grid that was made for it.
 void check_place(const Domain& domain, const TerrainTables& terrain, const ActiveCells& active, std::size_t p) {
   const auto cell = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
   const auto [i, j, layer] = cell;
   const bool inside = i >= 0 && j >= 0 && i < domain.grid.columns && j < domain.grid.rows;
-  if (!inside || !terrain.open[domain.grid.index(i, j)]) {
+  if (!inside || !terrain.open[domain.grid.index(i, j)])
     throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge", p,
                                  domain.points.x[p], domain.points.y[p]),
                      "a point needs known ground one cell around it",
                      "Give a larger elevation model, or a smaller source, and run talus-preprocess again"});
-  }
   if (active.holds(cell)) return;
   throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}), {:.2f} m above the bed, lies in column {}, "
                                "row {}, layer {}, which is no active cell of the background grid",
@@ -155,6 +137,21 @@ double lowest_weighed(const SolveOptions& options) {
 }
 
 }  // namespace
+
+void each_bed(const Domain& domain, const SolveOptions& options,
+              const std::function<void(const BaseFriction<double>&)>& visit) {
+  SolveOptions here = options;
+  std::vector<double*> numbers;
+  for (const auto& [name, raster] : domain.bed) numbers.push_back(here.base.named(name));
+  for (std::size_t column = 0; column < domain.grid.count(); ++column) {
+    here.base = options.base;
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const double value = domain.bed[n].second.values[column];
+      if (numbers[n] && std::isfinite(value)) *numbers[n] = value;
+    }
+    visit(make_base_friction<double>(here));
+  }
+}
 
 GridShape grid_shape(const Domain& domain, const SolveOptions& options) {
   GridShape shape;

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <functional>
 #include <vector>
 
 #include "common/domain/domain.hpp"
@@ -12,12 +14,18 @@
 
 namespace talus::solver {
 
+/// Finds the nearest node of a position in cells, and the offset from it.
+inline void place_in_cells(double position, int& cell, double& offset) {
+  const double nearest = std::floor(position + 0.5);
+  cell = static_cast<int>(nearest);
+  offset = position - nearest;
+}
+
 /// This function places the seeds of a domain on the background grid. It throws DataError when a seed lies outside the
 /// ground, or outside the active cells that the domain's file names.
 Scene make_scene(const Domain& domain, const SolveOptions& options);
 
-/// The part of a scene that does not depend on how it is stepped: grid, terrain tables, inflows, shaking. It throws
-/// RecipeError and DataError.
+/// What of a scene no stepping changes: grid, terrain tables, inflows, shaking. Throws RecipeError and DataError.
 Scene begin_scene(const Domain& domain, const SolveOptions& options);
 
 /// That scene with its points, bed and contacts, for steps as the options settle them; it throws as make_scene().
@@ -26,10 +34,14 @@ Scene finish_scene(const Domain& domain, const SolveOptions& options, Scene begu
 /// The shape of the background grid as the domain and the recipe give it.
 GridShape grid_shape(const Domain& domain, const SolveOptions& options);
 
+/// Calls visit(friction) with the law of the bed of every cell of the map: the numbers of the domain's rasters where
+/// they have some, the recipe's elsewhere.
+void each_bed(const Domain& domain, const SolveOptions& options,
+              const std::function<void(const BaseFriction<double>&)>& visit);
+
 /// The positions of points in map coordinates [m].
 std::vector<std::array<double, 3>> positions(const Scene& scene, const ParticleState& points);
 
-/// The waves that bound the first step.
 struct FirstWaves {
   double speed;                 ///< [m/s]
   bool bound_by_layers = true;  ///< those across the layers too
@@ -38,8 +50,7 @@ struct FirstWaves {
 /// Those of a recipe: of the fastest of its materials.
 FirstWaves first_waves(const SolveOptions& options);
 
-/// An upper bound of (wave speed + speed) over cell size for points at rest or moving at `speed`, for the first step
-/// [1/s].
+/// An upper bound of (wave speed + speed) over cell size for points that move at `speed`, for the first step [1/s].
 double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,
                   const FirstWaves& waves, double speed);
 

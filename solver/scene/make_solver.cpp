@@ -4,13 +4,8 @@
 
 #include <utility>
 
-#include "solver/column_implicit/make_column_implicit_solver.hpp"
-#include "solver/explicit/make_explicit_solver.hpp"
-#include "solver/implicit/make_implicit_solver.hpp"
-#include "solver/integrator/scene.hpp"
-#include "solver/options/solve.hpp"
+#include "solver/integrator/make_solvers.hpp"
 #include "solver/parallel/atomics.hpp"
-#include "solver/parallel/device.hpp"
 #include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
@@ -48,9 +43,9 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& 
   const auto of = [&]<class Real>(Real) {
     return with_shape(settings.common.shape, [&]<class Shape>(Shape) {
       const StepAbilities steps = abilities_of(settings.integrator);
-      if (steps.solve_columns) return make_column_implicit_solver<Real, Shape>(scene, settings.common, device, state);
-      if (steps.obey_cfl) return make_explicit_solver<Real, Shape>(scene, settings.common, device, state);
-      return make_implicit_solver<Real, Shape>(scene, settings.common, settings.implicit, device, state);
+      if (steps.solve_columns) return ColumnImplicitSolvers<Real, Shape>::make(scene, settings.common, device, state);
+      if (steps.obey_cfl) return ExplicitSolvers<Real, Shape>::make(scene, settings.common, device, state);
+      return ImplicitSolvers<Real, Shape>::make(scene, settings.common, settings.implicit, device, state);
     });
   };
   return settings.common.precision == Precision::single_ ? of(float{}) : of(double{});
@@ -67,9 +62,8 @@ AnyDevice make_device(On on, int index) {
 }
 
 On choose_device(On on) {
-  if (on == On::gpu && !gpu_available()) {
+  if (on == On::gpu && !gpu_available())
     throw RecipeError({"--on gpu", "this machine has no GPU that the program can use", "Use --on cpu or --on auto"});
-  }
   if (on == On::automatic) return gpu_available() ? On::gpu : On::cpu;
   return on;
 }

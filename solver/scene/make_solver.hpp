@@ -8,7 +8,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
-#include "solver/parallel/any_device.hpp"
+#include "solver/parallel/device.hpp"
 #include "solver/parallel/on.hpp"
 #include "solver/scene/settings.hpp"
 
@@ -34,8 +34,7 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& op
 /// A new device: the CPU's, or a stream on the GPU of that index. `on` must be cpu or gpu.
 AnyDevice make_device(On on, int index = 0);
 
-/// The choice of cpu or gpu where `on` is automatic; the function throws RecipeError when a GPU is asked for and there
-/// is none.
+/// The choice of cpu or gpu where `on` is automatic. Throws RecipeError: a GPU is asked for and there is none.
 On choose_device(On on);
 
 }  // namespace talus::solver

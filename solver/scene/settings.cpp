@@ -19,6 +19,14 @@ constexpr double transfer_falls = 0.3, transfer_waves = 10;
 /// The coefficient of friction of an angle in degrees.
 double coefficient(double degrees) { return std::tan(degrees * (std::numbers::pi / 180)); }
 
+/// The time over which velocity finer than the grid decays (T8a) [s]: the recipe's, or the scene's own.
+double transfer_time_of(const SolveOptions& o, const GridShape& grid) {
+  if (o.transfer_time) return *o.transfer_time;
+  const double g = o.gravity_size();
+  return g > 0 ? transfer_falls * std::sqrt(grid.layer_height / g)
+               : transfer_waves * grid.layer_height / fastest_wave(o);
+}
+
 ParticleNeeds needs_of(const SolveOptions& o) {
   return {.affine_transfer = o.affine(),
           .plastic_volume = o.any_material([](const MaterialOptions& m) { return m.dilates(); }),
@@ -38,10 +46,6 @@ PlaneWall make_wall(const WallOptions& o) {
           .to = o.to};
 }
 
-SeparationSettings make_separation(const SolveOptions& o, const GridShape& grid) {
-  return {.kind = o.base.separation, .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
-}
-
 IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   IntegratorSettings s{o, o, o};
   s.needs = needs_of(o);
@@ -52,17 +56,14 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
                  .in_single = make_materials<float>(o, grid.spacing, grid.layer_height),
                  .densities_differ = o.densities_differ()};
   s.bed = make_base_friction<double>(o);
-  s.separation = make_separation(o, grid);
+  s.separation = {.kind = o.base.separation,
+                  .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
   std::transform(o.walls.begin(), o.walls.end(), std::back_inserter(s.walls), make_wall);
   s.loads = o.loads;
   return s;
 }
 
-ImplicitControls make_implicit(const SolveOptions& o) {
-  return {o.implicit, scheme_of(o), abilities_of(o.integrator).carry_inertia, interrupted};
-}
-
-/// This function lets materials follow the laws that take their part while gravity is loaded, and do not yield.
+/// Lets materials follow the laws that take their part while gravity is loaded, and do not yield.
 template <class Real>
 void hold(Materials<Real>& materials) {
   for (Material<Real>& m : materials.list) m.model = model_while_loading(m.model);
@@ -70,17 +71,11 @@ void hold(Materials<Real>& materials) {
 
 }  // namespace
 
-double transfer_time_of(const SolveOptions& o, const GridShape& grid) {
-  if (o.transfer_time) return *o.transfer_time;
-  const double g = o.gravity_size();
-  return g > 0 ? transfer_falls * std::sqrt(grid.layer_height / g)
-               : transfer_waves * grid.layer_height / fastest_wave(o);
-}
-
 SolverSettings make_settings(const SolveOptions& options, const GridShape& grid) {
-  return {.integrator = options.flow_integrator(),
-          .common = make_common(options, grid),
-          .implicit = make_implicit(options)};
+  return {
+      .integrator = options.flow_integrator(),
+      .common = make_common(options, grid),
+      .implicit = {options.implicit, scheme_of(options), abilities_of(options.integrator).carry_inertia, interrupted}};
 }
 
 SolverSettings for_gravity_loading(SolverSettings s, int steps) {

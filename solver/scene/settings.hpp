@@ -8,7 +8,6 @@
 
 #include "solver/boundary/contact_points.hpp"
 #include "solver/grid/terrain.hpp"
-#include "solver/implicit/controls.hpp"
 #include "solver/integrator/settings.hpp"
 #include "solver/options/solve.hpp"
 
@@ -21,15 +20,12 @@ struct SolverSettings {
   ImplicitControls implicit;  ///< looked at by implicit integrators
 };
 
-/// The time over which velocity finer than the grid decays (T8a) [s]: the recipe's, or the scene's own.
-double transfer_time_of(const SolveOptions& options, const GridShape& grid);
-
 /// The settings that the options ask for on this grid; presets are resolved already (with_preset).
 SolverSettings make_settings(const SolveOptions& options, const GridShape& grid);
 
 /// The settings of quasi-static steps of gravity loading, from time 0 to 1: bodies that yield are elastic and stick to
 /// their bed, for what is about to slide has no other equilibrium; gravity grows over all steps, and the walls of the
-/// start are there throughout.
+/// start stay.
 SolverSettings for_gravity_loading(SolverSettings settings, int steps);
 
 /// The obstacles with their coefficient of friction.

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state of a run between steps, kept on the device so that a batch of steps needs nothing from the host.
+// The state of a run between steps, kept on the device so that a batch of steps needs nothing from the host; gravity
+// and the shaking of the ground as kernels see them.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 
 #include "solver/parallel/atomics.hpp"
-#include "solver/parallel/math.hpp"
 
 namespace talus {
 
@@ -176,6 +176,68 @@ struct Clock {
     motion_maps.is_due = 1;
     motion_maps.path_unrecorded = 0;
     motion_maps.steps_unrecorded = 0;
+  }
+};
+
+/// A sample of an accelerogram; between samples the acceleration is linear.
+struct ShakingSample {
+  double time = 0;              ///< of the run [s]
+  Vec3<double> acceleration{};  ///< of the ground [m/s2]
+  Vec3<double> velocity{};      ///< of the ground, from rest before the first sample (T41) [m/s]
+};
+
+/// An accelerogram, its samples in the order of time. Before and after them the ground does not accelerate.
+struct ShakingView {
+  const ShakingSample* samples = nullptr;
+  int count = 0;  ///< 0, or 2 and more
+
+  TALUS_HD bool acts() const { return count > 0; }  ///< whether there is an accelerogram
+
+  /// The velocity of the ground at a time (T41) [m/s].
+  TALUS_HD Vec3<double> velocity_at(double time) const {
+    if (!acts() || time <= samples[0].time) return {};
+    if (time >= samples[count - 1].time) return samples[count - 1].velocity;
+    const int k = before(time);
+    const ShakingSample a = samples[k], b = samples[k + 1];
+    const double into = time - a.time, share = into / (b.time - a.time);
+    return a.velocity + (a.acceleration + (b.acceleration - a.acceleration) * (0.5 * share)) * into;
+  }
+
+ private:
+  TALUS_HD bool holds(int k, double time) const { return samples[k].time <= time && time < samples[k + 1].time; }
+
+  /// The sample before a time that lies within the accelerogram. Samples are mostly equally apart: then it is found at
+  /// once.
+  TALUS_HD int before(double time) const {
+    const double first = samples[0].time, duration = samples[count - 1].time - first;
+    int low = static_cast<int>((time - first) / duration * (count - 1)), high = count - 1;
+    if (low > count - 2) low = count - 2;
+    if (holds(low, time)) return low;
+    low = 0;
+    while (high - low > 1) {
+      const int middle = low + (high - low) / 2;
+      if (samples[middle].time <= time) {
+        low = middle;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  }
+};
+
+/// Gravity that grows to its full size from the start of a run.
+template <class Real>
+struct Gravity {
+  Vec3<Real> full{};  ///< [m/s2]
+  double ramp = 0;    ///< time over which it grows [s]; 0: there from the start
+
+  /// The share of it that acts at a time [-].
+  TALUS_HD double share(double time) const { return ramp > 0 && time < ramp ? time / ramp : 1; }
+  /// The acceleration by which a step pulls, in the frame of the ground (T42): gravity, less what the ground
+  /// accelerates by [m/s2].
+  TALUS_HD Vec3<Real> at(const Clock& clock) const {
+    return full * Real(share(clock.time)) - narrow<Real>(clock.ground_acceleration());
   }
 };
 

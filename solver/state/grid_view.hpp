@@ -26,7 +26,6 @@ inline constexpr int blocks_across(int columns) { return (columns + block_side -
 /// The vertical coordinate of the grid: above the terrain, or above the datum.
 enum class Mapping { terrain_following, cartesian };
 
-/// The place in storage of the nodes of a block of columns.
 struct BlockSlot {
   int offset = -1;  ///< first node; -1: no storage
   int first_layer = 0;

@@ -4,8 +4,6 @@
 #pragma once
 
 #include "common/run/map_fields.hpp"
-#include "solver/parallel/macros.hpp"
-#include "solver/parallel/math.hpp"
 #include "solver/state/clock.hpp"
 
 namespace talus {

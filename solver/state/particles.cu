@@ -3,7 +3,6 @@
 #include "solver/state/particles.hpp"
 
 #include <algorithm>
-#include <type_traits>
 
 namespace talus {
 namespace {
@@ -39,7 +38,6 @@ GatherAll<int, most_ints>& gather_of(const int*, GatherAll<Real, most_reals>&, G
   return ints;
 }
 
-/// This function uploads a list in the numbers of the device.
 template <class Number, class Device, class Value>
 void upload_list(Buffer<Number, Device>& to, const std::vector<Value>& from) {
   if constexpr (std::is_same_v<Number, Value>) {

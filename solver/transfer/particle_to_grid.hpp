@@ -4,7 +4,6 @@
 #pragma once
 
 #include "solver/material/material.hpp"
-#include "solver/parallel/tiles.hpp"
 #include "solver/state/clock.hpp"
 #include "solver/transfer/stencil.hpp"
 
@@ -125,14 +124,11 @@ struct ParticleToGrid {
   // The members that ScatterKernel (tiles.hpp) asks for.
   /// The first node of a source; see ScatterKernel for this and the next members.
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
-  /// The place where layer 0 of column q of a source is stored, or would be.
   TALUS_HD int column_of(const Source& s, int q) const {
     return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width);
   }
-  /// The place of node c of a column whose first layer is k.
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
   TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  ///< false below the ground, where there is no node
-  /// The numbers of a node's sums are put side by side.
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
     to[1] = sums.momentum.x;
@@ -145,7 +141,6 @@ struct ParticleToGrid {
     }
     if constexpr (what == Scatter::springs) to[7] = sums.spring;
   }
-  /// The location of part q of a stored node.
   TALUS_HD Real* part(int node, int q) const {
     return q < 4 ? &nodes[node].w + q : q < 7 ? &forces[node].x + (q - 4) : &forces[node].w;
   }
@@ -179,7 +174,6 @@ struct ParticleToGrid {
     }
   }
 
-  /// The sums go to a stored node.
   TALUS_HD void add_to_node(int n, const Sums& sums) const {
     scatter_add(&nodes[n], sums.mass, sums.momentum);
     if constexpr (forces_apart(what)) scatter_add(&forces[n], sums.spring, sums.force);

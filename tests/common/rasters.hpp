@@ -3,11 +3,14 @@
 // Rasters for tests, and CRS texts by EPSG code.
 #pragma once
 
-#include <ogr_spatialref.h>
-
 #include <cmath>
+#include <filesystem>
+#include <memory>
 #include <random>
 #include <string>
+
+#include <cpl_minixml.h>
+#include <ogr_spatialref.h>
 
 #include "common/map/raster.hpp"
 
@@ -72,5 +75,12 @@ inline bool identical(const Raster& a, const Raster& b) {
     if (a.values[i] != b.values[i] && !(std::isnan(a.values[i]) && std::isnan(b.values[i]))) return false;
   return true;
 }
+
+struct DestroyXml {
+  void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
+};
+using XmlDocument = std::unique_ptr<CPLXMLNode, DestroyXml>;
+
+inline XmlDocument parsed(const std::filesystem::path& file) { return XmlDocument(CPLParseXMLFile(file.c_str())); }
 
 }  // namespace talus::test

@@ -14,26 +14,31 @@ std::map<std::string, Target>& targets() {
   return all;
 }
 
-InputFile::InputFile(Bytes bytes, const std::string& extension) {
+void expect_result_or_error(const Input& input, const std::function<void(const fs::path&)>& read) {
   static const fs::path folder = fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path();
-  path_ = folder / ("talus-fuzz-" + std::to_string(::getpid()) + extension);
-  std::ofstream(path_, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-}
-
-InputFile::~InputFile() {
-  std::error_code ignored;
-  fs::remove(path_, ignored);
-}
-
-void InputFile::seal() const { seal_file(path_, path_); }
-
-void expect_result_or_error(const std::function<void()>& read) {
+  const struct File {
+    fs::path path;
+    ~File() {
+      std::error_code ignored;
+      fs::remove(path, ignored);
+    }
+  } file{folder / ("talus-fuzz-" + std::to_string(::getpid()) + input.extension)};
+  std::ofstream(file.path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(input.bytes.data()), static_cast<std::streamsize>(input.bytes.size()));
+  if (input.sealed) seal_file(file.path, file.path);
   try {
-    read();
+    read(file.path);
   } catch (const Error& error) {
     if (error.faults().empty() || error.faults().front().what.empty()) throw std::logic_error("an error without words");
   }
 }
 
 }  // namespace talus::fuzz
+
+#ifdef TALUS_FUZZING  // the name of the target that libFuzzer calls
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const talus::fuzz::Target target = talus::fuzz::targets().at(TALUS_FUZZING);
+  target({data, size});
+  return 0;
+}
+#endif

@@ -3,8 +3,6 @@
 // Runs in memory: input given in memory is that of files, and a keeper sees and ends a run.
 #include "library/talus.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -92,7 +90,10 @@ struct Impatient : Keeper {
   void pass_steps() override { throw GaveUp{}; }
 };
 
-TEST(Library, what_a_keeper_throws_comes_out_and_an_interruption_does) {
+TEST(Library, what_a_keeper_throws_comes_out_an_interruption_does_and_faults_of_a_recipe_do) {
+  EXPECT_THROW(prepare(Recipe::parse("[preprocess.laboratory]\n", ".")), RecipeError);
+  EXPECT_THROW(prepare(Recipe::parse("[preprocess]\nbefore_dem = \"none.tif\"\nafter_dem = \"none.tif\"\n")),
+               DataError);
   const Plan plan(slope(), moving(coulomb));
   Impatient impatient;
   EXPECT_THROW(run(plan, On::cpu, impatient), GaveUp);
@@ -181,13 +182,6 @@ TEST(Library, writes_the_outputs_of_a_result) {
   EXPECT_EQ(read.maps.deposit_thickness, result.maps.deposit_thickness);
   EXPECT_EQ(read.history.at("kinetic_J").values, result.history.at("kinetic_J").values);
   EXPECT_EQ(read.frames.thickness, result.frames.thickness);
-}
-
-TEST(Library, prepares_the_site_of_a_recipe) {
-  const auto recipe = Recipe::parse("[preprocess.laboratory]\n", ".");
-  EXPECT_THROW(prepare(recipe), RecipeError);
-  EXPECT_THROW(prepare(Recipe::parse("[preprocess]\nbefore_dem = \"none.tif\"\nafter_dem = \"none.tif\"\n")),
-               DataError);
 }
 
 }  // namespace

@@ -24,6 +24,26 @@ inline std::string faults_of(preprocess::Options options) {
   return text;
 }
 
+inline void expect_faults(const preprocess::Options& options, const std::string& text) {
+  EXPECT_EQ(faults_of(options), text);
+}
+
+inline preprocess::Options two_models(const std::filesystem::path& before, const std::filesystem::path& after) {
+  preprocess::Options options;
+  options.before_dem = before;
+  options.after_dem = after;
+  return options;
+}
+
+/// A release of a thickness on a model.
+inline preprocess::Options released_on(const std::filesystem::path& base, const std::filesystem::path& thickness) {
+  preprocess::Options options;
+  options.base_dem = base;
+  options.release.resize(1);
+  options.release[0].thickness_raster = thickness;
+  return options;
+}
+
 /// Options come back from the recipe that is written of them.
 inline void expect_read_as_written(const preprocess::Options& options) {
   const std::string text = recipe::to_toml(options, "preprocess", false);
@@ -63,17 +83,23 @@ struct Scene {
     return options.release.emplace_back();
   }
 
+  void source_outline(const std::string& wkt) { options.source.polygon = write_polygon(scratch, "source.csv", wkt); }
   void rewrite_after(const Raster& raster) { write(scratch, "after.tif", raster); }
   void rewrite_before(const Raster& raster) { write(scratch, "before.tif", raster); }
 
   preprocess::Prepared prepare() const { return preprocess::prepare(options, preprocess::Points::seeded); }
   std::string data_fault() const {
-    return fault_of<DataError>([&] { prepare(); });
+    return scratch.from_here(fault_of<DataError>([&] { prepare(); }));
   }
   std::string recipe_fault() const {
-    return fault_of<RecipeError>([&] { prepare(); });
+    return scratch.from_here(fault_of<RecipeError>([&] { prepare(); }));
   }
   std::string path(const std::string& name) const { return (scratch / name).string(); }
+};
+
+/// A test with a scene of its own.
+struct WithScene : testing::Test, Scene {
+  void expect_fault(const std::string& words) const { EXPECT_EQ(data_fault(), words); }
 };
 
 }  // namespace talus::test

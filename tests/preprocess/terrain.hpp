@@ -15,7 +15,7 @@
 
 #include "common/gis/geotiff.hpp"
 #include "common/map/raster.hpp"
-#include "common/map/sum.hpp"
+#include "common/map/statistics.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::test {
@@ -25,9 +25,13 @@ inline unsigned test_seed() {
   const char* fixed = std::getenv("TALUS_TEST_SEED");
   return fixed ? static_cast<unsigned>(std::strtoul(fixed, nullptr, 10)) : std::random_device{}();
 }
-#define TALUS_SEEDED(seed)                          \
-  const unsigned seed = ::talus::test::test_seed(); \
-  SCOPED_TRACE("TALUS_TEST_SEED=" + std::to_string(seed))
+/// Random numbers from it, which a failure tells.
+struct Seeded : std::mt19937 {
+  explicit Seeded(unsigned of = test_seed())
+      : std::mt19937(of), number(of), trace(__FILE__, __LINE__, "TALUS_TEST_SEED=" + std::to_string(of)) {}
+  const unsigned number;
+  const testing::ScopedTrace trace;
+};
 
 inline MapGrid grid_of(int columns, int rows, double cell, double west = 500000, double south = 5100000) {
   MapGrid grid;
@@ -42,9 +46,8 @@ inline MapGrid grid_of(int columns, int rows, double cell, double west = 500000,
 template <class Value>
 Raster raster_of(const MapGrid& grid, Value value) {
   Raster raster{grid, std::vector<double>(grid.count())};
-  for (int row = 0; row < grid.rows; ++row) {
+  for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) raster.at(column, row) = value(grid.x(column), grid.y(row));
-  }
   return raster;
 }
 
@@ -78,6 +81,24 @@ class Hills {
   double fall_x_ = 0, fall_y_ = 0, west_ = 0, south_ = 0;
 };
 
+/// Cell by cell.
+inline Raster difference(const Raster& a, const Raster& b) {
+  Raster result = a;
+  for (std::size_t i = 0; i < a.values.size(); ++i) result.values[i] -= b.values[i];
+  return result;
+}
+
+inline void expect_near(const std::vector<double>& a, const std::vector<double>& b, double tolerance) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], tolerance) << i;
+}
+
+/// Takes the value of all cells in a window away.
+inline void punch(Raster& raster, const CellWindow& w) {
+  for (int row = w.row; row < w.row + w.rows; ++row)
+    for (int column = w.column; column < w.column + w.columns; ++column) raster.at(column, row) = std::nan("");
+}
+
 inline double volume_of(const Raster& thickness) {
   Sum sum;
   for (double t : thickness.values) sum.add(t);
@@ -94,6 +115,11 @@ inline std::filesystem::path write(const Scratch& scratch, const std::string& na
 inline std::filesystem::path write_polygon(const Scratch& scratch, const std::string& name, const std::string& wkt,
                                            const std::string& columns = ",id", const std::string& values = ",1") {
   return scratch.write(name, "WKT" + columns + "\n\"" + wkt + "\"" + values + "\n");
+}
+
+/// A rectangle as WKT.
+inline std::string rectangle(double west, double south, double east, double north) {
+  return fmt::format("POLYGON(({0} {1},{2} {1},{2} {3},{0} {3},{0} {1}))", west, south, east, north);
 }
 
 }  // namespace talus::test

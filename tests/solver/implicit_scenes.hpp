@@ -10,23 +10,17 @@ namespace talus::solver::testing {
 
 /// A column one cell wide between rollers, its lower end fixed, points 2 x 2 x 2 per cell.
 inline Domain column(double height, double layer_height) {
-  Domain d = ground(6, 6, 1.0, layer_height, [](double, double) { return 0.0; });
-  fill(d, {2.5, 3.5, 2.5, 3.5, 0, height});
-  return d;
+  return filled(ground(6, 6, 1.0, layer_height, flat), {2.5, 3.5, 2.5, 3.5, 0, height});
 }
 
 inline SolveOptions column_options() {
-  SolveOptions o;
-  o.integrator = Integrator::quasi_static;
+  SolveOptions o = stepping_by(Integrator::quasi_static);
   o.mapping = Mapping::cartesian;
   o.shape = ShapeKind::linear;
   o.material.model = MaterialModel::hencky;
   o.material.poisson_ratio = 0;
   o.base.law = FrictionLaw::stick;
-  for (const auto axis : {Axis::x, Axis::y}) {
-    o.walls.push_back({axis, 2.5, Side::above, WallKind::roller});
-    o.walls.push_back({axis, 3.5, Side::below, WallKind::roller});
-  }
+  o.walls = rollers(2.5, 3.5);
   return o;
 }
 
@@ -40,15 +34,11 @@ inline int steps_to(Solver& solver, double time, StepStats* last = nullptr) {
   return newton;
 }
 
-/// validation.md A2 at two cells over the depth: a cantilever of 10 x 1 x 1 m, E = 1 GPa, held at x = 0, its last
-/// points pulled down.
+/// validation.md A2, two cells deep: a cantilever of 10 x 1 x 1 m, E = 1 GPa, held at x = 0, its end pulled down.
 struct Cantilever {
-  Domain domain = ground(28, 10, 0.5, 0.5, [](double, double) { return 0.0; });
-  SolveOptions options;
+  Domain domain = filled(ground(28, 10, 0.5, 0.5, flat, -1.75, -1.75), {0, 10, 0, 1, 10, 11});
+  SolveOptions options = stepping_by(Integrator::quasi_static);
   Cantilever(ShapeKind shape, double k) {
-    domain.grid.west = domain.grid.south = -1.75;
-    fill(domain, {0, 10, 0, 1, 10, 11});
-    options.integrator = Integrator::quasi_static;
     options.mapping = Mapping::cartesian;
     options.shape = shape;
     options.gravity = {0, 0, 0};

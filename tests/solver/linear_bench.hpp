@@ -7,7 +7,7 @@
 
 #include "solver/elements/forces.hpp"
 #include "solver/elements/point_tangents.hpp"
-#include "solver/implicit/scatter_inertia.hpp"
+#include "solver/implicit/transfer.hpp"
 #include "solver/linear/direct/cholesky_solver.hpp"
 #include "solver/linear/krylov/conjugate_gradient.hpp"
 #include "solver/linear/operator/tangent_operator.hpp"
@@ -211,16 +211,7 @@ struct LinearBench {
   /// Calls f(i, j, k, n) for every stored node.
   template <class F>
   void for_nodes(F&& f) const {
-    const GridView<Real> view = grid.view();
-    const auto slots = slots_of(grid);
-    for (int j = 0; j < view.rows; ++j) {
-      for (int i = 0; i < view.columns; ++i) {
-        const BlockSlot& slot = slots[static_cast<std::size_t>((j >> 2) * view.block_columns_x + (i >> 2))];
-        for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
-          f(i, j, k, static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k)));
-        }
-      }
-    }
+    for_stored_nodes(grid.view(), slots_of(grid), f);
   }
   /// The base nodes slide on level ground, all others are free.
   void lay_down() {

@@ -4,18 +4,15 @@
 #pragma once
 
 #include "solver/boundary/surface_contact.hpp"
-#include "solver/implicit/controls.hpp"
-#include "solver/implicit/step_parts.hpp"
+#include "solver/implicit/contact_set.hpp"
+#include "solver/integrator/settings.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 
 inline SolveOptions options_of(Integrator integrator) {
-  SolveOptions o;
-  o.integrator = integrator;
+  SolveOptions o = elastic_options(1e6, integrator);
   o.shape = ShapeKind::quadratic;
-  o.material.model = MaterialModel::hencky;
-  o.material.youngs_modulus = 1e6;
   o.implicit.step = 0.01;
   return o;
 }
@@ -34,9 +31,8 @@ struct PartsBench {
   SumSpace<CpuDevice> sums{device};
 
   static Scene make(const SolveOptions& o) {
-    Domain d = ground(14, 12, 1.0, 1.0, [](double x, double) { return 10 - 0.6 * x; });
-    fill(d, {4, 8, 4, 8, 0, 3});
-    return make_scene(d, o);
+    return make_scene(
+        filled(ground(14, 12, 1.0, 1.0, [](double x, double) { return 10 - 0.6 * x; }), {4, 8, 4, 8, 0, 3}), o);
   }
   static ParticleNeeds needs(const IntegratorSettings& s) {
     ParticleNeeds n = s.needs;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "solver/grid/sparse_grid.hpp"
+#include "solver/integrator/solver.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/on.hpp"
 #include "solver/scene/make_scene.hpp"
@@ -15,19 +16,28 @@
 
 namespace talus::solver::testing {
 
-/// A flat or tilted ground under columns x rows cells.
+inline constexpr double degree = std::numbers::pi / 180;  ///< [rad]
+
+/// Of a rigid block on an incline under Coulomb's friction, down it [m/s2]; angles in degrees.
+inline double sliding_acceleration(double slope, double friction) {
+  return 9.81 * (std::sin(slope * degree) - std::tan(friction * degree) * std::cos(slope * degree));
+}
+
+/// A flat or tilted ground under columns x rows cells from a south-western corner on.
 inline Domain ground(int columns, int rows, double cell, double layer_height,
-                     const std::function<double(double, double)>& elevation) {
+                     const std::function<double(double, double)>& elevation, double west = 0, double south = 0) {
   Domain d;
-  d.grid = {columns, rows, 0, 0, cell, ""};
+  d.grid = {columns, rows, west, south, cell, ""};
   d.layer_height = layer_height;
   d.terrain = d.before = d.release_thickness = {d.grid, std::vector<double>(d.grid.count(), 0.0)};
-  for (int j = 0; j < rows; ++j) {
+  for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) d.terrain.at(i, j) = d.before.at(i, j) = elevation(d.grid.x(i), d.grid.y(j));
-  }
   d.release_names = {"body"};
   return d;
 }
+
+/// The elevation of level ground [m].
+inline double flat(double, double) { return 0; }
 
 /// The recipe's name of shape functions.
 template <class Shape>
@@ -37,6 +47,15 @@ inline constexpr ShapeKind kind_of = Shape::averaged ? ShapeKind::gimp
 
 inline const char* name_of(ShapeKind shape) {
   return shape == ShapeKind::linear ? "linear" : shape == ShapeKind::gimp ? "gimp" : "quadratic";
+}
+
+/// The steps that flows take, and all that have inertia.
+inline constexpr Integrator flow_integrators[] = {Integrator::explicit_, Integrator::column_implicit};
+inline constexpr Integrator moving_integrators[] = {Integrator::explicit_, Integrator::column_implicit,
+                                                    Integrator::newmark};
+
+inline const char* name_of(Integrator i) {
+  return i == Integrator::newmark ? "newmark" : i == Integrator::column_implicit ? "column-implicit" : "explicit";
 }
 
 struct Box {
@@ -71,6 +90,56 @@ inline void fill(Domain& d, const Box& box, int across = 2, int up = 2) {
   }
 }
 
+/// The same domain with points in a box.
+inline Domain filled(Domain d, const Box& box, int across = 2, int up = 2) {
+  fill(d, box, across, up);
+  return d;
+}
+
+/// The released thickness [m] in columns and rows from the first to before the last.
+inline void release(Domain& d, std::array<int, 2> columns, std::array<int, 2> rows, double thickness) {
+  for (int row = rows[0]; row < rows[1]; ++row)
+    for (int column = columns[0]; column < columns[1]; ++column) d.release_thickness.at(column, row) = thickness;
+}
+
+inline double total(const Energies& e) { return e.kinetic + e.potential + e.elastic; }
+
+inline SolveOptions stepping_by(Integrator integrator) {
+  SolveOptions o;
+  o.integrator = integrator;
+  return o;
+}
+
+/// Hencky's law with a modulus of elasticity [Pa].
+inline SolveOptions elastic_options(double youngs_modulus, Integrator integrator = SolveOptions{}.integrator) {
+  SolveOptions o = stepping_by(integrator);
+  o.material.model = MaterialModel::hencky;
+  o.material.youngs_modulus = youngs_modulus;
+  return o;
+}
+
+/// Upright rollers about a square.
+inline std::vector<WallOptions> rollers(double from, double to) {
+  std::vector<WallOptions> walls;
+  for (const Axis axis : {Axis::x, Axis::y}) {
+    walls.push_back({axis, from, Side::above});
+    walls.push_back({axis, to, Side::below});
+  }
+  return walls;
+}
+
+/// Calls f(i, j, k, n) for every stored node n of a grid whose blocks of columns are stored in these slots.
+template <class Real, class F>
+void for_stored_nodes(const GridView<Real>& grid, const std::vector<BlockSlot>& slots, F&& f) {
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const BlockSlot& slot = slots[static_cast<std::size_t>((j >> 2) * grid.block_columns_x + (i >> 2))];
+      for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k)
+        f(i, j, k, static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k)));
+    }
+  }
+}
+
 /// Where the blocks of columns are stored.
 template <class Real, class Device>
 std::vector<BlockSlot> slots_of(const SparseGrid<Real, Device>& grid) {
@@ -81,13 +150,31 @@ std::vector<BlockSlot> slots_of(const SparseGrid<Real, Device>& grid) {
   return slots;
 }
 
-/// Where a test runs. A GPU that is not there skips aloud, and fails where one was promised.
+/// A GPU that is not there skips a test aloud, and fails it where one was promised.
+inline void need_gpu() {
+  if (gpu_available()) return;
+  if (std::getenv("TALUS_REQUIRE_GPU") != nullptr) FAIL() << "TALUS_REQUIRE_GPU is set, but no GPU can be used";
+  GTEST_SKIP() << "no GPU on this machine: the same test ran on the CPU";
+}
+
+/// Where a test runs.
 class InEachPlace : public ::testing::TestWithParam<On> {
  protected:
   void SetUp() override {
-    if (GetParam() != On::gpu || gpu_available()) return;
-    if (std::getenv("TALUS_REQUIRE_GPU") != nullptr) FAIL() << "TALUS_REQUIRE_GPU is set, but no GPU can be used";
-    GTEST_SKIP() << "no GPU on this machine: the same test ran on the CPU";
+    if (GetParam() == On::gpu) need_gpu();
+  }
+};
+
+/// A test that is handed a device of the place that it runs in.
+class OnEachDevice : public InEachPlace {
+ protected:
+  /// The method calls body(device).
+  template <class Body>
+  static void on_device(Body&& body) {
+    if (GetParam() == On::cpu) body(CpuDevice::make());
+#if TALUS_FOR_GPU
+    if (GetParam() == On::gpu) body(GpuDevice::make());
+#endif
   }
 };
 
@@ -150,13 +237,40 @@ inline Centre centre(const Solver& solver, const Scene& scene) {
   return {c.x / volume, c.y / volume, c.z / volume, std::sqrt(vx * vx + vy * vy + vz * vz) / volume};
 }
 
-/// A run of a scene on a new device.
+/// The share of a deposit that lies elsewhere than that of `reference`.
+inline double share_elsewhere(const std::vector<double>& thickness, const std::vector<double>& reference) {
+  double moved = 0, all = 0;
+  for (std::size_t n = 0; n < reference.size(); ++n) {
+    moved += 0.5 * std::abs(thickness[n] - reference[n]);
+    all += reference[n];
+  }
+  return moved / all;
+}
+
+/// The mean velocity down a slope [deg] that falls eastwards, of what is within 4 m of the centre [m/s].
+inline double speed_inside(const Solver& solver, const Scene& scene, double slope) {
+  const double angle = slope * std::numbers::pi / 180;
+  const ParticleState s = solver.state().points;
+  const auto x = positions(scene, s);
+  const double middle = centre(solver, scene).x;
+  double sum = 0, volume = 0;
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    if (std::abs(x[p][0] - middle) > 4) continue;
+    sum += s.volume[p] * (s.velocity[0][p] * std::cos(angle) - s.velocity[2][p] * std::sin(angle));
+    volume += s.volume[p];
+  }
+  return sum / volume;
+}
+
+/// A run of a scene on a new device, until a time.
 struct SceneRun {
   Scene scene;
   std::unique_ptr<Solver> solver;
   Centre first;  ///< as it begins
-  SceneRun(const Domain& d, const SolveOptions& o, On on)
-      : scene(make_scene(d, o)), solver(make_solver(scene, o, on)), first(now()) {}
+  SceneRun(const Domain& d, const SolveOptions& o, On on, double until = 0)
+      : scene(make_scene(d, o)), solver(make_solver(scene, o, on)), first(now()) {
+    if (until > 0) run_to(*solver, until);
+  }
   Centre now() const { return centre(*solver, scene); }
   Centre at(double time) const {
     run_to(*solver, time);

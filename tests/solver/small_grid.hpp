@@ -10,6 +10,7 @@ namespace talus::solver::testing {
 /// A grid of 8 x 8 columns and 8 layers over a plane, stored as a whole.
 struct SmallGrid {
   static constexpr int side = 8, layers = 8, nodes = side * side * layers;
+  static constexpr std::size_t column = 2 * side + 5;        ///< (5, 2), the one that tests of columns fill
   double spacing = 2, layer_height = 0.5, along_x, along_y;  ///< [m]; slopes of the plane [-]
   std::vector<double> terrain, slope_x, slope_y;
   std::vector<unsigned char> open;
@@ -22,9 +23,8 @@ struct SmallGrid {
         slope_x(side * side, along_x_),
         slope_y(side * side, along_y_),
         open(side * side, 1) {
-    for (int j = 0; j < side; ++j) {
+    for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i) terrain.push_back(place(i, j, 0).z);
-    }
     for (int block = 0; block < 4; ++block) slots.push_back({block * layers * block_columns, 0, layers});
   }
   /// The place of a node or of anything else that has numbers in the grid [m].
@@ -50,11 +50,9 @@ struct SmallGrid {
   template <class Field>
   std::vector<Vec3<double>> sample(const Field& field) const {
     std::vector<Vec3<double>> values(nodes);
-    for (int j = 0; j < side; ++j) {
-      for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i)
         for (int k = 0; k < layers; ++k) values[static_cast<std::size_t>(view().find(i, j, k))] = field(place(i, j, k));
-      }
-    }
     return values;
   }
 };

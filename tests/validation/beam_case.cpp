@@ -27,16 +27,14 @@ struct Beam {
 Overrides overrides_of(const Beam& b) {
   const double s = b.point_spacing();
   const auto cells = [&](double metres) { return std::lround(metres / b.h); };
-  return {{"preprocess.grid.spacing_m", b.h},
-          {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, b.per_cell)},
-          {"preprocess.laboratory.cells[0]", whole(cells(length) + 8)},
-          {"preprocess.laboratory.cells[1]", whole(cells(depth) + 8)},
-          {"preprocess.laboratory.corner_m[0]", -3.5 * b.h},
-          {"preprocess.laboratory.corner_m[1]", -3.5 * b.h},
-          {"solve.shape", words(b.shape)},
-          {"solve.implicit.step_s", 1.0 / b.steps},
-          {"solve.load[0].extent_m", std::vector<double>{length - 0.9 * s, 0, length, depth, lift, lift + depth}},
-          {"solve.load[0].force_N", std::vector<double>{0, 0, -b.load()}}};
+  return grid_of(b.h, b.per_cell) +
+         Overrides{
+             {"preprocess.laboratory.cells[0]", whole(cells(length) + 8)},
+             {"preprocess.laboratory.cells[1]", whole(cells(depth) + 8)},
+             {"solve.shape", words(b.shape)},
+             {"solve.implicit.step_s", 1.0 / b.steps},
+             {"solve.load[0].extent_m", std::vector<double>{length - 0.9 * s, 0, length, depth, lift, lift + depth}},
+             {"solve.load[0].force_N", std::vector<double>{0, 0, -b.load()}}};
 }
 
 /// Points of one cross-section, by their place at the start: mean of their place in a later frame.
@@ -70,15 +68,13 @@ std::string name_of(const Beam& b, const std::string& scheme) {
 /// The frame in which the load, which grows with time, has reached k; null where the run did not get there.
 const Points* frame_at(const Outcome& o, const Beam& b, double k) {
   if (!o.ok()) return nullptr;
-  for (const Points& frame : o.frames) {
+  for (const Points& frame : o.frames)
     if (std::abs(frame.time - k / b.k) < 1e-6) return &frame;
-  }
   return nullptr;
 }
 
-/// Adds the rows of load k and returns w/L: against the elastica (the goal of validation.md), and against a beam that
-/// shears and stretches, which is what the solid itself converges to; at this depth it bends 0.6 % (k = 1) to 1.4 % (k
-/// = 10) further.
+/// Adds the rows of load k and returns w/L: against the elastica (the goal), and against a beam that shears and
+/// stretches, to which the solid converges; at this depth it bends 0.6 % (k = 1) to 1.4 % (k = 10) further.
 double judge(Bench& bench, const Outcome& outcome, const Beam& b, double k, double tolerance) {
   const Points* frame = frame_at(outcome, b, k);
   const double deflection = frame ? sections_of(outcome, *frame).w.back() / b.arm() : nothing;
@@ -107,55 +103,43 @@ void add_shape(Chart& chart, const Outcome& o, const Beam& b, double k, int colo
   solid_beam(k, depth / b.arm(), Law::corotated, axis, places);
   Series exact{chart.series.empty() ? "beam with shear and stretch" : "", {}, {}, 0};
   for (const AxisPoint& a : axis) {
-    exact.x.push_back(a.x * b.arm());
-    exact.y.push_back(-a.w * b.arm());
+    exact.add(a.x * b.arm(), -a.w * b.arm());
   }
   exact.width = 2;
   chart.series.push_back(exact);
   const Points* bent = frame_at(o, b, k);
   if (!bent) return;
-  Series points{fmt::format("k = {:g}", k), {}, {}, colour};
+  Series points = marks_of(fmt::format("k = {:g}", k), colour, 2.5);
   for (std::size_t p = 0; p < bent->size(); ++p) {
     if (!on_outline(o.first().position[p], b)) continue;
     const auto& place = bent->position[p];
-    points.x.push_back(place[0]);
-    points.y.push_back(place[2] - lift - 0.5 * depth);
+    points.add(place[0], place[2] - lift - 0.5 * depth);
   }
-  points.line = false;
-  points.marks = true;
-  points.mark_size = 2.5;
   chart.series.push_back(points);
 }
 
 Chart deflection_chart() {
-  Chart chart;
-  chart.title = "A2: tip deflection over load";
-  chart.x_label = "k = P L² / (E I)";
-  chart.y_label = "w / L";
+  Chart chart = plain_chart("A2: tip deflection over load", "k = P L² / (E I)", "w / L");
   chart.x = Limits{0, 10.5};
   chart.y = Limits{0, 0.9};
   Series thin{"elastica", {}, {}, 0}, solid{"beam with shear and stretch", {}, {}, 7};
   solid.dashed = true;
   for (int n = 0; n <= 52; ++n) {
     const double k = 0.2 * n;
-    thin.x.push_back(k);
-    thin.y.push_back(k == 0 ? 0 : elastica(k).across);
-    solid.x.push_back(k);
-    solid.y.push_back(k == 0 ? 0 : solid_beam(k, depth / length, Law::corotated).across);
+    thin.add(k, k == 0 ? 0 : elastica(k).across);
+    solid.add(k, k == 0 ? 0 : solid_beam(k, depth / length, Law::corotated).across);
   }
   chart.series = {thin, solid};
   return chart;
 }
 
-/// w/L for several loads on one grid, passed one after the other as the load grows to k = 10 in 50 steps, and the
-/// deflected beams.
+/// w/L for several loads on one grid, passed as the load grows to k = 10 in 50 steps, and the deflected beams.
 void load_study(Bench& bench, Beam b, double tolerance, Chart& curve, int colour) {
   b.k = 10;
   b.steps = 50;
-  Chart beams;
-  beams.title = fmt::format("A2: deflected beams, {} functions, h = {:g} m, {} load steps", b.shape, b.h, b.steps);
-  beams.x_label = "x [m]";
-  beams.y_label = "z [m]";
+  Chart beams =
+      plain_chart(fmt::format("A2: deflected beams, {} functions, h = {:g} m, {} load steps", b.shape, b.h, b.steps),
+                  "x [m]", "z [m]");
   beams.equal_scales = true;
   beams.x = Limits{-0.5, 11};
   beams.y = Limits{-9, 1};
@@ -163,13 +147,10 @@ void load_study(Bench& bench, Beam b, double tolerance, Chart& curve, int colour
   const Outcome outcome =
       bench.run(name_of(b, scheme.name),
                 overrides_of(b) + Overrides{{"solve.frame_interval_s", 1.0 / b.steps}} + scheme.overrides);
-  Series s{fmt::format("{}, h = {:g} m", b.shape, b.h), {}, {}, colour};
-  s.line = false;
-  s.marks = true;
+  Series s = marks_of(fmt::format("{}, h = {:g} m", b.shape, b.h), colour, 7);
   int next = 1;
   for (const double k : {1.0, 2.0, 3.0, 3.6, 5.0, 8.0, 10.0}) {
-    s.x.push_back(k);
-    s.y.push_back(judge(bench, outcome, b, k, tolerance));
+    s.add(k, judge(bench, outcome, b, k, tolerance));
     add_shape(beams, outcome, b, k, next++);
   }
   curve.series.push_back(s);
@@ -182,22 +163,20 @@ void refinement(Bench& bench, const std::vector<double>& cells) {
                           "error against the beam with shear and stretch");
   int colour = 1;
   for (const char* shape : {"quadratic", "linear"}) {
-    std::vector<double> h, error;
+    Series error{shape, {}, {}, colour++};
     for (const double size : cells) {
       Beam b;
       b.h = size;
       b.per_cell = 2;
       b.shape = shape;
-      // Tolerance of the coarse grids: the error of linear functions in bending, (h / depth)^2 / 2, and as much for the
-      // clamp.
+      // Tolerance: the error of linear functions in bending, (h / depth)^2 / 2, and as much for the clamp.
       const double tolerance = std::max(0.01, size * size);
       const double deflection =
           bend(bench, b, linear_schemes()[size < 0.2 ? 0 : 1], tolerance);  // factors of the finest fill memory
-      h.push_back(size);
-      error.push_back(std::abs(deflection / solid_beam(b.k, depth / b.arm(), Law::corotated).across - 1));
+      error.add(size, std::abs(deflection / solid_beam(b.k, depth / b.arm(), Law::corotated).across - 1));
     }
-    chart.series.push_back(convergence(shape, h, error, colour++));
-    if (chart.series.size() == 1) chart.series.push_back(slope_line(2, h, h.front(), error.front()));
+    chart.series.push_back(convergence(error));
+    if (chart.series.size() == 1) chart.series.push_back(slope_line(2, error));
   }
   bench.picture("A2-convergence", png_of(chart));
 }
@@ -223,23 +202,23 @@ void cantilever_studies(Bench& bench) {
   for (const char* shape : {"quadratic", "gimp", "linear"}) {
     Beam b;
     b.shape = shape;
-    std::vector<double> spacing, error, share, difference;
+    Series error{shape, {}, {}, colour}, difference{shape, {}, {}, colour};
+    ++colour;
     for (const int per_cell : {2, 3, 4, 5}) {
       b.per_cell = per_cell;
-      spacing.push_back(1.0 / per_cell);
       const double exact = solid_beam(b.k, depth / b.arm(), Law::corotated).across;
-      error.push_back(std::abs(tip(b, fmt::format("{} points per cell", per_cell * per_cell * per_cell)) / exact - 1));
+      error.add(1.0 / per_cell,
+                std::abs(tip(b, fmt::format("{} points per cell", per_cell * per_cell * per_cell)) / exact - 1));
     }
-    points.series.push_back(convergence(shape, spacing, error, colour));
+    points.series.push_back(convergence(error));
     b.per_cell = 2;
     b.steps = 160;
     const double finest = tip(b, "160 load steps");
     for (const int count : {10, 20, 40, 80}) {
       b.steps = count;
-      share.push_back(1.0 / count);
-      difference.push_back(std::abs(tip(b, fmt::format("{} load steps", count)) / finest - 1));
+      difference.add(1.0 / count, std::abs(tip(b, fmt::format("{} load steps", count)) / finest - 1));
     }
-    steps.series.push_back(convergence(shape, share, difference, colour++));
+    steps.series.push_back(convergence(difference));
   }
   bench.picture("A2-points", png_of(points));
   bench.picture("A2-steps", png_of(steps));

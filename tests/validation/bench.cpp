@@ -2,21 +2,145 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/validation/bench.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
-#include <cctype>
-#include <cerrno>
-#include <cstdio>
-#include <fstream>
-
+#include "common/recipe/toml.hpp"
+#include "common/run/hdf5.hpp"
 #include "common/stage/stage.hpp"
 
-extern char** environ;
-
 namespace talus::validation {
+namespace {
+
+struct Columns {
+  std::vector<double> position;
+  std::vector<float> velocity, volume, pressure;
+  std::vector<std::int32_t> id;
+};
+
+Columns read_columns(const h5::File& file) {
+  const auto whole = [&](const std::string& name, auto kind) {
+    return file.read<decltype(kind)>("/VTKHDF/" + name, file.dims("/VTKHDF/" + name));
+  };
+  return {whole("Points", 0.0), whole("PointData/velocity", 0.0F), whole("PointData/volume", 0.0F),
+          whole("PointData/pressure", 0.0F), whole("PointData/id", std::int32_t{})};
+}
+
+Points frame_of(const Columns& c, std::size_t first, std::size_t count, std::size_t points) {
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+  Points frame;
+  frame.position.assign(points, {nowhere, nowhere, nowhere});
+  frame.velocity.assign(points, {});
+  frame.volume.assign(points, 0);
+  frame.pressure.assign(points, 0);
+  for (std::size_t p = first; p < first + count; ++p) {
+    const auto id = static_cast<std::size_t>(c.id[p]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      frame.position[id][a] = c.position[3 * p + a];
+      frame.velocity[id][a] = c.velocity[3 * p + a];
+    }
+    frame.volume[id] = c.volume[p];
+    frame.pressure[id] = c.pressure[p];
+  }
+  return frame;
+}
+
+/// x of the points that are in the domain.
+std::vector<double> along_x(const Points& points) {
+  std::vector<double> x;
+  for (const auto& p : points.position)
+    if (std::isfinite(p[0])) x.push_back(p[0]);
+  return x;
+}
+
+}  // namespace
+
+std::vector<Points> read_points(const std::filesystem::path& run) {
+  const auto file = h5::File::open(run, {run, "Run talus-solve again"});
+  if (!file.exists("/VTKHDF/Steps/Values")) return {};
+  const auto times = file.read<double>("/VTKHDF/Steps/Values", file.dims("/VTKHDF/Steps/Values"));
+  const auto counts = file.read<std::int64_t>("/VTKHDF/NumberOfPoints", file.dims("/VTKHDF/NumberOfPoints"));
+  const Columns columns = read_columns(file);
+  const auto last = std::max_element(columns.id.begin(), columns.id.end());
+  const std::size_t points = last == columns.id.end() ? 0 : static_cast<std::size_t>(*last) + 1;
+  std::vector<Points> frames;
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < times.size(); ++f) {
+    const auto count = static_cast<std::size_t>(counts.at(f));
+    frames.push_back(frame_of(columns, first, count, points));
+    frames.back().time = times[f];
+    first += count;
+  }
+  return frames;
+}
+
+double front_of(const Points& points, double cell, double point_spacing) {
+  std::vector<double> x = along_x(points);
+  std::sort(x.begin(), x.end());
+  double front = 0;
+  for (const double at : x) {
+    if (at > front + cell + point_spacing) break;
+    front = at;
+  }
+  return front + 0.5 * point_spacing;
+}
+
+double reach_of(const Points& points) {
+  std::vector<double> x = along_x(points);
+  const auto at = x.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(x.size()));
+  std::nth_element(x.begin(), at, x.end());
+  return *at;
+}
+
+long cost_bound(long recorded) { return std::lround(std::ceil(1.15 * static_cast<double>(recorded))) + 2; }
+
+CostBook read_costs(const std::filesystem::path& file) {
+  CostBook book;
+  if (!std::filesystem::exists(file)) return book;
+  try {
+    const toml::table table = toml::parse_file(file.string());
+    for (const auto& [run, value] : table) {
+      const toml::array* numbers = value.as_array();
+      long found[3] = {-1, -1, -1};
+      for (std::size_t n = 0; numbers && numbers->size() == 3 && n < 3; ++n)
+        found[n] = static_cast<long>(numbers->get(n)->value_or<std::int64_t>(-1));
+      if (found[0] < 0 || found[1] < 0 || found[2] < 0)
+        throw std::runtime_error(
+            fmt::format("{}: \"{}\" is not [steps, Newton iterations, linear iterations]. "
+                        "talus-validate --record-costs writes such lines",
+                        file.string(), std::string(run.str())));
+      book[std::string(run.str())] = {found[0], found[1], found[2]};
+    }
+  } catch (const toml::parse_error& error) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), error.source().begin.line, error.description()));
+  }
+  return book;
+}
+
+std::string as_toml(const CostBook& book) {
+  std::string text =
+      "# What the runs of the validation have cost: steps, Newton iterations, linear iterations. A run may cost 15 % "
+      "and\n"
+      "# two more; rows of the table say so. Written by talus-validate --record-costs, which keeps the runs that it "
+      "does\n"
+      "# not make.\n";
+  for (const auto& [run, cost] : book)
+    text += fmt::format("\"{}\" = [{}, {}, {}]\n", run, cost.steps, cost.newton, cost.linear);
+  return text;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,59 +270,47 @@ Row Bench::row_of(const Outcome& outcome, const std::string& quantity) const {
   return row;
 }
 
-void Bench::judge(Row row) {
-  if (!row.fault.empty()) row.computed = row.error = unknown;
+void Bench::judge(const Outcome& outcome, const std::string& quantity, double computed, double reference, double error,
+                  double tolerance) {
+  Row row = row_of(outcome, quantity);
+  row.computed = outcome.ok() ? computed : unknown;
+  row.reference = reference;
+  row.error = outcome.ok() ? error : unknown;
+  row.tolerance = tolerance;
   row.judged = true;
-  row.pass = row.fault.empty() && std::isfinite(row.error) && row.error <= row.tolerance;
+  row.pass = outcome.ok() && std::isfinite(error) && error <= tolerance;
   keep_(row);
 }
 
 void Bench::compare(const Outcome& outcome, const std::string& quantity, double computed, double reference,
                     double tolerance) {
-  Row row = row_of(outcome, quantity);
-  row.computed = computed;
-  row.reference = reference;
-  row.tolerance = tolerance;
-  row.error = reference == 0 ? std::abs(computed) : std::abs(computed / reference - 1);
-  judge(std::move(row));
+  judge(outcome, quantity, computed, reference,
+        reference == 0 ? std::abs(computed) : std::abs(computed / reference - 1), tolerance);
 }
 
 void Bench::at_least(const Outcome& outcome, const std::string& quantity, double computed, double reference) {
-  Row row = row_of(outcome, quantity);
-  row.computed = computed;
-  row.reference = reference;
-  row.error = std::max(0.0, reference - computed);
-  if (!std::isfinite(computed)) row.error = unknown;
-  judge(std::move(row));
+  judge(outcome, quantity, computed, reference,
+        std::isfinite(computed) ? std::max(0.0, reference - computed) : unknown);
 }
 
 void Bench::at_most(const Outcome& outcome, const std::string& quantity, double computed, double reference) {
-  Row row = row_of(outcome, quantity);
-  row.computed = computed;
-  row.reference = reference;
-  row.tolerance = 0;
-  row.error = std::max(0.0, computed / reference - 1);
-  judge(std::move(row));
+  judge(outcome, quantity, computed, reference, std::max(0.0, computed / reference - 1));
 }
 
 void Bench::within(const Outcome& outcome, const std::string& quantity, double computed, double low, double high) {
-  Row row = row_of(outcome, quantity);
-  row.computed = computed;
-  row.reference = std::abs(computed - low) < std::abs(computed - high) ? low : high;
-  row.tolerance = 0;
-  row.error = computed >= low && computed <= high ? 0 : std::abs(computed / row.reference - 1);
-  judge(std::move(row));
+  const double nearer = std::abs(computed - low) < std::abs(computed - high) ? low : high;
+  judge(outcome, quantity, computed, nearer, computed >= low && computed <= high ? 0 : std::abs(computed / nearer - 1));
 }
 
 void Bench::note(const Outcome& outcome, const std::string& quantity, double computed) {
   Row row = row_of(outcome, quantity);
-  row.computed = row.fault.empty() ? computed : unknown;
+  row.computed = outcome.ok() ? computed : unknown;
   row.reference = row.tolerance = row.error = unknown;
   keep_(row);
 }
 
 void Bench::judge_cost(const Outcome& outcome) {
-  const std::string run = outcome.variant.empty() ? name_ : name_ + " " + outcome.variant;
+  const std::string run = row_of(outcome, "").name;
   const Cost cost{static_cast<long>(outcome.run.summary.steps), whole_or_none(outcome.last_of("newton_iterations")),
                   whole_or_none(outcome.last_of("linear_iterations"))};
   costs_[run] = cost;

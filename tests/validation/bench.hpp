@@ -1,18 +1,59 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs variants of a case's recipe through the programs and keeps the rows of the table.
+// Runs variants of a case's recipe through the programs, reads their points and keeps the rows of the table.
 #pragma once
 
+#include <array>
+#include <filesystem>
 #include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
 #include "common/run/run_file.hpp"
-#include "tests/validation/costs.hpp"
-#include "tests/validation/points.hpp"
 #include "tests/validation/recipe_text.hpp"
 
 namespace talus::validation {
+
+/// Index = id; a point that left the domain has NaN for a position.
+struct Points {
+  double time = 0;                              // [s]
+  std::vector<std::array<double, 3>> position;  // [m]
+  std::vector<std::array<float, 3>> velocity;   // [m/s]
+  std::vector<float> volume;                    // initial [m3]
+  std::vector<float> pressure;                  // minus the mean Kirchhoff stress [Pa]
+  std::size_t size() const { return position.size(); }
+};
+
+/// From group VTKHDF of run.h5; none where it has no frames of points, as a search for a factor. Throws DataError.
+std::vector<Points> read_points(const std::filesystem::path& run);
+
+/// Where a deposit along x ends: the last point before a gap of a cell, and half a point (single grains roll on) [m].
+double front_of(const Points& points, double cell, double point_spacing);
+
+/// How far along x 99 of 100 points got [m]. Where a deposit ends is less: its tip is strings of points a cell apart,
+/// and chance says where they tear. Points that left do not count; there must be one.
+double reach_of(const Points& points);
+
+/// The cost of a run: steps, and Newton's and linear iterations where there are any, else 0.
+struct Cost {
+  long steps = 0, newton = 0, linear = 0;
+};
+
+/// The most that a number of the book may have become: 15 % and two more. The order of sums, which threads decide,
+/// moves the iterations of a flow by a few per cent; a change that costs more than this should be known.
+long cost_bound(long recorded);
+
+/// Costs by run, "A1 quasi-static, quadratic, pcg".
+using CostBook = std::map<std::string, Cost>;
+
+/// The book in a file; empty where there is none. Throws std::runtime_error: no table of three whole numbers a run.
+CostBook read_costs(const std::filesystem::path& file);
+
+/// The text of the file.
+std::string as_toml(const CostBook& book);
 
 /// What was asked of the driver.
 struct Request {
@@ -105,7 +146,8 @@ class Bench {
   /// Runs the stages, and returns what went wrong.
   std::string run_stages(const std::string& variant, const Overrides& overrides, bool profile) const;
   Row row_of(const Outcome& outcome, const std::string& quantity) const;
-  void judge(Row row);
+  void judge(const Outcome& outcome, const std::string& quantity, double computed, double reference, double error,
+             double tolerance = 0);
   void judge_cost(const Outcome& outcome);
 
   std::string name_;

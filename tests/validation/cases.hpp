@@ -28,16 +28,6 @@ inline const std::vector<LinearScheme>& linear_schemes() {
   return schemes;
 }
 
-struct Case {
-  const char* name;  // as in validation.md; up to a hyphen that of its recipe's folder
-  const char* title;
-  bool quick;  // has rows that need no LONG=1
-  void (*run)(Bench&);
-  bool coarse = false;  // has rows on coarse grids, seconds a case
-};
-
-const std::vector<Case>& cases();
-
 void self_weight_column(Bench&);          // A1
 void large_compaction(Bench&);            // A1b
 void cantilever(Bench&);                  // A2

@@ -60,9 +60,8 @@ struct Axis {
     }
     const double raw = (high - low) / wanted, size = std::pow(10, std::floor(std::log10(raw)));
     double step = 10 * size;
-    for (const double m : {5.0, 2.0, 1.0}) {
+    for (const double m : {5.0, 2.0, 1.0})
       if (m * size >= raw * 0.999) step = m * size;
-    }
     const long first = std::lround(std::ceil(low / step - 1e-9));
     for (long n = first; static_cast<double>(n) * step <= high + 1e-9 * step; ++n)
       result.push_back(static_cast<double>(n) * step);
@@ -256,8 +255,6 @@ void draw_legend(const Chart& chart, const Frame& f, Canvas& canvas) {
   }
 }
 
-}  // namespace
-
 void draw(const Chart& chart, Canvas& canvas, const Box& area) {
   const Frame frame = frame_of(chart, area);
   draw_axes(chart, frame, canvas);
@@ -266,6 +263,8 @@ void draw(const Chart& chart, Canvas& canvas, const Box& area) {
   canvas.unclip();
   draw_legend(chart, frame, canvas);
 }
+
+}  // namespace
 
 std::string png_of(const Chart& chart, int width, int height) {
   Canvas canvas(width, height);
@@ -291,33 +290,33 @@ std::string png_of_panels(const std::vector<Chart>& panels, int width) {
   return canvas.png();
 }
 
-Chart log_chart(const std::string& title, const std::string& x_label, const std::string& y_label) {
+Chart plain_chart(const std::string& title, const std::string& x_label, const std::string& y_label) {
   Chart chart;
   chart.title = title;
   chart.x_label = x_label;
   chart.y_label = y_label;
+  return chart;
+}
+
+Chart log_chart(const std::string& title, const std::string& x_label, const std::string& y_label) {
+  Chart chart = plain_chart(title, x_label, y_label);
   chart.log_x = chart.log_y = true;
   return chart;
 }
 
-Series convergence(const std::string& name, const std::vector<double>& h, const std::vector<double>& error,
-                   int colour) {
-  std::vector<double> x, y;
-  for (std::size_t i = 0; i < h.size(); ++i) {
-    if (!std::isfinite(error[i]) || !(error[i] > 0)) continue;
-    x.push_back(h[i]);
-    y.push_back(error[i]);
-  }
-  const double order = x.size() > 1 ? observed_order(x.data(), y.data(), static_cast<int>(x.size())) : 0;
-  Series s{x.size() > 1 ? fmt::format("{} (order {:.2f})", name, order) : name, x, y, colour};
-  s.marks = true;
+Series convergence(const Series& errors) {
+  Series s = marked_line(errors.name, errors.colour);
+  for (std::size_t i = 0; i < errors.x.size(); ++i)
+    if (std::isfinite(errors.y[i]) && errors.y[i] > 0) s.add(errors.x[i], errors.y[i]);
+  const auto count = static_cast<int>(s.x.size());
+  if (count > 1) s.name = fmt::format("{} (order {:.2f})", errors.name, observed_order(s.x.data(), s.y.data(), count));
   return s;
 }
 
-Series slope_line(double order, const std::vector<double>& h, double at_h, double at_error) {
-  const auto [low, high] = std::minmax_element(h.begin(), h.end());
+Series slope_line(double order, const Series& errors) {
+  const auto [low, high] = std::minmax_element(errors.x.begin(), errors.x.end());
   Series s{fmt::format("order {:g}", order), {*low, *high}, {}, 7};
-  for (const double x : s.x) s.y.push_back(at_error * std::pow(x / at_h, order));
+  for (const double x : s.x) s.y.push_back(errors.y.front() * std::pow(x / errors.x.front(), order));
   s.dashed = true;
   s.width = 2.5;
   return s;

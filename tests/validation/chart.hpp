@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "postprocess/picture/canvas.hpp"
+#include "postprocess/picture/picture.hpp"
 
 namespace talus::validation {
 
@@ -19,7 +19,17 @@ struct Series {
   bool dashed = false;
   double width = 3;
   double mark_size = 7;
+  void add(double x_at, double y_at) {
+    x.push_back(x_at);
+    y.push_back(y_at);
+  }
 };
+
+/// Marks without a line, and a line with marks, of points that are yet to be added.
+inline Series marks_of(const std::string& name, int colour, double size) {
+  return {name, {}, {}, colour, false, true, false, 3, size};
+}
+inline Series marked_line(const std::string& name, int colour) { return {name, {}, {}, colour, true, true}; }
 
 struct Limits {
   double low, high;
@@ -33,22 +43,20 @@ struct Chart {
   std::vector<Series> series;
 };
 
-/// Draw into a part of a canvas.
-void draw(const Chart& chart, postprocess::Canvas& canvas, const postprocess::Box& area);
-
 /// One chart as a PNG's bytes.
 std::string png_of(const Chart& chart, int width = 1400, int height = 1000);
 
 /// Charts with equal scales below one another, each as high as its limits ask for.
 std::string png_of_panels(const std::vector<Chart>& panels, int width = 1400);
 
-/// An empty chart, logarithmic both ways.
+/// An empty chart, and one that is logarithmic both ways.
+Chart plain_chart(const std::string& title, const std::string& x_label, const std::string& y_label);
 Chart log_chart(const std::string& title, const std::string& x_label, const std::string& y_label);
 
-/// "quadratic (order 1.93)": a series of errors over cell sizes with the observed order in its name.
-Series convergence(const std::string& name, const std::vector<double>& h, const std::vector<double>& error, int colour);
+/// "quadratic (order 1.93)": a series of errors over cell sizes, with marks and the observed order in its name.
+Series convergence(const Series& errors);
 
-/// A dashed line of a given order through the middle of the data, for the eye.
-Series slope_line(double order, const std::vector<double>& h, double at_h, double at_error);
+/// A dashed line of a given order from the first of the errors, for the eye.
+Series slope_line(double order, const Series& errors);
 
 }  // namespace talus::validation

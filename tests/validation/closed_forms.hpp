@@ -53,8 +53,7 @@ struct SlidingBlock {
   double way(double speed, double time) const;
 };
 
-/// Ground that falls along a line from `fall` to level: as a parabola over `run`, or at 30 degrees into an arc of
-/// `radius`. Lengths in m.
+/// Ground that falls from `fall` to level as a parabola over `run`, or at 30 degrees into an arc of `radius` [m].
 struct GroundLine {
   enum Kind { parabola, bend } kind;
   double fall, run, radius;

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The closed forms against values from elsewhere, so that the table leans on something.
-#include "tests/validation/closed_forms.hpp"
-
+// The closed forms against values from elsewhere, so that the table leans on something; and the table.
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/common/scratch.hpp"
-#include "tests/validation/recipe_text.hpp"
+#include "tests/validation/closed_forms.hpp"
+#include "tests/validation/report.hpp"
 #include "tests/validation/slices.hpp"
 
 namespace talus::validation {
@@ -23,9 +24,8 @@ TEST(closed_forms, elastica_has_the_tabulated_tips) {
 }
 
 TEST(closed_forms, solid_beam_is_the_elastica_where_it_is_slender) {
-  for (const Law law : {Law::hencky, Law::corotated}) {
+  for (const Law law : {Law::hencky, Law::corotated})
     EXPECT_NEAR(solid_beam(5, 1e-3, law).across, elastica(5).across, 1e-5);
-  }
 }
 
 TEST(closed_forms, solid_beam_adds_timoshenkos_shear_to_a_small_deflection) {
@@ -63,8 +63,7 @@ TEST(closed_forms, column_settles_as_linear_theory_says_where_it_is_stiff) {
 }
 
 TEST(closed_forms, column_has_the_papers_stress_in_current_coordinates) {
-  // sigma(x) = E (sqrt(2 rho b (D - x) / E + 1) - 1), tension positive and b upwards; here the weight presses, so b <
-  // 0.
+  // sigma(x) = E (sqrt(2 rho b (D - x) / E + 1) - 1), tension positive and b upwards; the weight presses, so b < 0.
   const Column c{Law::corotated, 1e6, 200, 50};
   const double top = 50 - c.settlement(50);
   for (const double x : {0.0, 10.0, 30.0, 49.0}) {
@@ -79,8 +78,7 @@ TEST(closed_forms, block_slides_as_newton_says) {
 }
 
 TEST(closed_forms, ground_line_takes_its_share_in_a_tight_bend) {
-  // Through a bend much shorter than the way, Coulomb's friction on the centripetal force leaves exp(-2 mu angle) of
-  // the square of the speed.
+  // In a bend much shorter than the way, friction on the centripetal force leaves exp(-2 mu angle) of v^2.
   const GroundLine line{GroundLine::bend, 1000, 0, 1};
   const double slope = M_PI / 6, mu = 0.4, foot = 1000 / std::tan(slope), start = 400;
   const double square = 2 * 9.81 * (std::sin(slope) - mu * std::cos(slope)) * (foot - start) / std::cos(slope);
@@ -106,9 +104,8 @@ TEST(closed_forms, parabolic_cap_spreads_by_its_own_pressure) {
   EXPECT_NEAR((after.width - before.width) / (2 * dt), now.spread, 1e-8);
   EXPECT_NEAR((after.way - before.way) / (2 * dt), now.speed, 1e-9);
   double volume = 0;
-  for (int i = -400; i < 400; ++i) {
+  for (int i = -400; i < 400; ++i)
     for (int j = -400; j < 400; ++j) volume += 0.25 * cap.thickness(now, 0.5 * i, 0.5 * j);
-  }
   EXPECT_NEAR(volume, 0.5 * M_PI * 6400 * 4, 1e-4 * volume);
 }
 
@@ -121,8 +118,7 @@ TEST(closed_forms, dam_break_keeps_its_volume_and_momentum_balance) {
     volume += dx * dam.thickness(x, 3);
     momentum += dx * dam.thickness(x, 3) * dam.speed(x, 3);
   }
-  // What came in over x = -40 with the speed of the reservoir; weight less friction, the inflow's momentum and the
-  // pressure at x = -40.
+  // What came in over x = -40; weight less friction, the momentum of the inflow and the pressure at x = -40.
   EXPECT_NEAR(volume, 40 * 1.5 + 0.5 * pull * 9 * 1.5, 1e-3);
   double impulse = 0;
   const double dt = 1e-3;
@@ -146,9 +142,8 @@ TEST(recipe_text, overrides_keys_and_adds_tables) {
                                               {"b[0].name", words("first")},
                                               {"b[1].name", words("second")},
                                               {"a.list", std::vector<double>{0, 0.5, 0.0225}}});
-  for (const char* part : {"x = 2.5", "y = 3", "name = 'first'", "name = 'second'", "list = [ 0.0, 0.5, 0.0225 ]"}) {
+  for (const char* part : {"x = 2.5", "y = 3", "name = 'first'", "name = 'second'", "list = [ 0.0, 0.5, 0.0225 ]"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
-  }
   EXPECT_THROW(recipe_with(base, {{"b[5].name", words("far")}}), std::runtime_error);
 }
 
@@ -184,8 +179,7 @@ TEST(slices, have_taylors_factor_of_clay) {
 }
 
 TEST(slices, go_through_the_toe_above_a_foundation_of_the_same_ground) {
-  // Griffiths & Lane 1999, example 2: the foundation lets circles dip below the toe, which changes little; those that
-  // touch its base have 1.75.
+  // Griffiths & Lane 1999, example 2: circles may dip below the toe, which changes little; those on its base have 1.75.
   const double deep = bishop_factor({.cohesion = 0.05, .friction = 20, .base = 1.5});
   EXPECT_LT(deep, bishop_factor({.cohesion = 0.05, .friction = 20}));
   EXPECT_NEAR(deep, 1.37, 0.01);
@@ -197,6 +191,97 @@ TEST(slices, lose_as_much_as_the_water_carries) {
   const double dry = factor(0), first = dry - factor(0.25), second = factor(0.25) - factor(0.5);
   EXPECT_GT(first, 0.2);
   EXPECT_NEAR(first, second, 0.02);
+}
+
+/// The rows that a case makes of a run which went well, or ended with a fault.
+std::vector<Row> rows_of(const std::string& fault, const std::function<void(Bench&, const Outcome&)>& judge) {
+  std::vector<Row> rows;
+  const Request request;
+  Bench bench("X1", request, [&](const Row& row) { rows.push_back(row); });
+  Outcome outcome;
+  outcome.variant = "some grid";
+  outcome.fault = fault;
+  judge(bench, outcome);
+  return rows;
+}
+
+/// A row that is met, one that misses, and one that claims nothing.
+void three_rows(Bench& bench, const Outcome& o) {
+  bench.compare(o, "way", 1.005, 1, 0.01);
+  bench.compare(o, "height", 1.05, 1, 0.01);
+  bench.note(o, "speed", 3);
+}
+
+nlohmann::json json_of(const std::vector<Row>& rows) {
+  const Sitting sitting{
+      .commit = "1a2b3c4d5", .date = "2026-11-22", .on = "cpu", .complete = false, .coarse = false, .cases = {"X1"}};
+  return nlohmann::json::parse(as_json(sitting, rows));
+}
+
+TEST(Report, tells_noted_rows_from_judged_ones) {
+  const auto json = json_of(rows_of("", three_rows));
+  const auto& rows = json.at("rows");
+  ASSERT_EQ(rows.size(), 3);
+  EXPECT_EQ(rows[0].at("judged"), true);
+  EXPECT_EQ(rows[0].at("pass"), true);
+  EXPECT_EQ(rows[1].at("judged"), true);
+  EXPECT_EQ(rows[1].at("pass"), false);
+  EXPECT_EQ(rows[2].at("judged"), false);
+  EXPECT_EQ(rows[2].at("computed"), 3);
+  for (const char* claim : {"pass", "error", "tolerance", "reference"})
+    EXPECT_FALSE(rows[2].contains(claim)) << "a noted row claims " << claim;
+}
+
+TEST(Report, names_the_commit_and_the_day) {
+  const auto json = json_of(rows_of("", three_rows));
+  EXPECT_EQ(json.at("commit"), "1a2b3c4d5");
+  EXPECT_EQ(json.at("date"), "2026-11-22");
+  EXPECT_EQ(json.at("cases").size(), 1);
+}
+
+TEST(Report, counts_noted_rows_apart) {
+  const auto rows = rows_of("", three_rows);
+  const Counts c = count(rows);
+  EXPECT_EQ(c.judged, 2);
+  EXPECT_EQ(c.missed, 1);
+  EXPECT_EQ(c.noted, 1);
+  EXPECT_EQ(c.lost, 0);
+  const std::string table = as_table(rows);
+  EXPECT_NE(table.find("3 rows: 2 judged, of which 1 failed; 1 noted, of which 0 without a result"), std::string::npos)
+      << table;
+  EXPECT_NE(table.find(" noted "), std::string::npos) << table;
+}
+
+TEST(Report, of_a_run_without_a_result_passes_nothing) {
+  const auto rows = rows_of("exit code 4: no step converges", three_rows);
+  const Counts c = count(rows);
+  EXPECT_EQ(c.missed, 2);
+  EXPECT_EQ(c.lost, 1);
+  const auto json = json_of(rows);
+  EXPECT_TRUE(json.at("rows")[2].at("computed").is_null());
+  EXPECT_EQ(json.at("rows")[2].at("fault"), "exit code 4: no step converges");
+  EXPECT_NE(as_table(rows).find("no step converges"), std::string::npos);
+}
+
+TEST(Costs, may_grow_by_fifteen_per_cent_and_two) {
+  EXPECT_EQ(cost_bound(0), 2);
+  EXPECT_EQ(cost_bound(20), 25);
+  EXPECT_EQ(cost_bound(1000), 1152);
+  EXPECT_LT(cost_bound(880), 1554) << "what once went unnoticed";
+}
+
+TEST(Costs, are_read_as_they_were_written) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "costs.toml";
+  const CostBook book{{"A1 quasi-static, quadratic, pcg", {20, 40, 880}}, {"B3 20 m", {2690, 0, 0}}};
+  std::ofstream(file) << as_toml(book);
+  const CostBook read = read_costs(file);
+  ASSERT_EQ(read.size(), 2);
+  EXPECT_EQ(read.at("A1 quasi-static, quadratic, pcg").linear, 880);
+  EXPECT_EQ(read.at("B3 20 m").steps, 2690);
+  std::ofstream(file) << "\"A1\" = [20, 40]\n";
+  EXPECT_THROW(read_costs(file), std::runtime_error);
+  std::filesystem::remove(file);
+  EXPECT_TRUE(read_costs(file).empty());
 }
 
 }  // namespace

@@ -14,9 +14,8 @@ namespace {
 /// pressure of the file, minus the mean Kirchhoff stress, is a third of the vertical one.
 std::vector<double> piola_of(const Outcome& o, const Column& column) {
   std::vector<double> piola;
-  for (const float p : o.last().pressure) {
+  for (const float p : o.last().pressure)
     piola.push_back(column.modulus * piola_of_kirchhoff(column.law, -3.0 * static_cast<double>(p) / column.modulus));
-  }
   return piola;
 }
 
@@ -52,21 +51,14 @@ Top top_of(const Outcome& o, const Column& column) {
 }
 
 Series stresses(const std::string& name, const Outcome& o, const Column& column, int colour) {
-  Series s{name, {}, {}, colour};
-  if (o.ok()) s.x = piola_of(o, column);
-  for (double& x : s.x) x *= -1e-3;
-  for (std::size_t p = 0; p < s.x.size(); ++p) s.y.push_back(o.first().position[p][2]);
-  s.line = false;
-  s.marks = true;
-  s.mark_size = 5;
+  Series s = marks_of(name, colour, 5);
+  const auto piola = o.ok() ? piola_of(o, column) : std::vector<double>{};
+  for (std::size_t p = 0; p < piola.size(); ++p) s.add(piola[p] * -1e-3, o.first().position[p][2]);
   return s;
 }
 
 Chart stress_chart(const Column& column, const std::string& title) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "vertical stress, compression [kPa]";
-  chart.y_label = "height above the foot at the start [m]";
+  Chart chart = plain_chart(title, "vertical stress, compression [kPa]", "height above the foot at the start [m]");
   chart.series.push_back({"exact", {-1e-3 * column.piola(0), 0}, {0, column.height}, 0});
   return chart;
 }
@@ -119,14 +111,12 @@ void paper_table(Bench& bench, Chart& profile) {
       log_chart("A1: error of the top displacement over the step (paper's scheme, t = 4 s)", "step [s]", "error");
   const auto study = [&](const std::string& name, const char* integrator, const Overrides& more,
                          const std::vector<std::pair<double, double>>& steps_and_tolerances, int colour) {
-    Series s{name, {}, {}, colour};
-    s.marks = true;
+    Series s = marked_line(name, colour);
     for (const auto& [step, tolerance] : steps_and_tolerances) {
       const Outcome o = bench.run(fmt::format("{}, step {:g} s", name, step), paper_dynamics(integrator, step) + more);
       add_top(bench, o, tolerance);
       const Top top = top_of(o, self_weight);
-      s.x.push_back(step);
-      s.y.push_back(std::abs(top.computed / top.exact - 1));
+      s.add(step, std::abs(top.computed / top.exact - 1));
       if (step == 1e-4) profile.series.push_back(stresses(name + ", step 1e-4 s", o, self_weight, colour));
     }
     steps.series.push_back(s);
@@ -144,16 +134,11 @@ void paper_table(Bench& bench, Chart& profile) {
 
 Overrides refined_column(int level, const char* shape, int per_cell) {
   const double h = 50 / std::pow(2, level);
-  Overrides o{{"preprocess.grid.spacing_m", h},
-              {"preprocess.laboratory.corner_m[0]", -3.5 * h},
-              {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, per_cell)},
-              {"preprocess.laboratory.corner_m[1]", -3.5 * h},
-              {"preprocess.box[0].extent_m[2]", h},
-              {"preprocess.box[0].extent_m[3]", h},
-              {"solve.shape", words(shape)}};
-  o.push_back({"solve.wall[1].position_m", h});
-  o.push_back({"solve.wall[3].position_m", h});
-  return o;
+  return grid_of(h, per_cell) + Overrides{{"preprocess.box[0].extent_m[2]", h},
+                                          {"preprocess.box[0].extent_m[3]", h},
+                                          {"solve.shape", words(shape)},
+                                          {"solve.wall[1].position_m", h},
+                                          {"solve.wall[3].position_m", h}};
 }
 
 constexpr Column soft_column{Law::hencky, 1e4, 800, 50};
@@ -173,27 +158,25 @@ void order_study(Bench& bench, const Refinement& study, Chart& chart, Chart& pro
   const std::string name =
       fmt::format("{}, {} points per cell", study.shape, study.per_cell * study.per_cell * study.per_cell);
   const int finest = bench.complete() ? 7 : 5;
-  std::vector<double> h, error;
+  Series error{name, {}, {}, colour};
   Outcome o;
   for (int level = 2; level <= finest; ++level) {
     o = bench.run(fmt::format("{}, h = 50 / {}", name, 1 << level), refined_column(level, study.shape, study.per_cell));
-    h.push_back(50 / std::pow(2, level));
-    error.push_back(stress_error(o, soft_column));
+    error.add(50 / std::pow(2, level), stress_error(o, soft_column));
     if (level == 5 && study.always) profile.series.push_back(stresses(study.shape, o, soft_column, colour));
   }
-  // Splines integrate at points, and their error goes flat; hats stall when points cross cells: both are shown, and
-  // promise no order.
+  // Errors of splines at points go flat; hats stall when points cross cells: both are shown, and promise no order.
   o.variant = name;
-  const std::string range = fmt::format("order of the stress error, h = 12.5 to {:.1f} m", h.back());
-  const double order = observed_order(h.data(), error.data(), static_cast<int>(h.size()));
+  const std::string range = fmt::format("order of the stress error, h = 12.5 to {:.1f} m", error.x.back());
+  const double order = observed_order(error.x.data(), error.y.data(), static_cast<int>(error.x.size()));
   if (std::string(study.shape) == "gimp") {
     bench.at_least(o, range, order, 1);
-    if (study.per_cell == 2) chart.series.push_back(slope_line(1, h, h[0], error[0]));
+    if (study.per_cell == 2) chart.series.push_back(slope_line(1, error));
   } else {
     bench.note(o, range, order);
   }
-  bench.note(o, fmt::format("stress error, h = {:.1f} m", h.back()), error.back());
-  chart.series.push_back(convergence(name, h, error, colour));
+  bench.note(o, fmt::format("stress error, h = {:.1f} m", error.x.back()), error.y.back());
+  chart.series.push_back(convergence(error));
 }
 
 /// Error over the load steps, h = 50 m / 2^4: the stress against the closed form, which the grid bounds from below, and
@@ -205,7 +188,9 @@ void load_step_study(Bench& bench, const Column& column) {
   const int most = bench.complete() ? 160 : 40;
   int colour = 1;
   for (const char* shape : {"gimp", "quadratic", "linear"}) {
-    std::vector<double> share, stress, top;
+    Series top{fmt::format("{}, top against {} steps", shape, 2 * most), {}, {}, colour};
+    Series stress{fmt::format("{}, stress against the closed form", shape), {}, {}, colour++};
+    stress.dashed = stress.marks = true;
     double finest = nothing;
     for (int count = 2 * most; count >= 20; count /= 2) {
       const Outcome o = bench.run(fmt::format("{}, {} load steps", shape, count),
@@ -216,15 +201,12 @@ void load_step_study(Bench& bench, const Column& column) {
         finest = settled;
         continue;
       }
-      share.push_back(1.0 / count);
-      stress.push_back(stress_error(o, column));
-      top.push_back(std::abs(settled / finest - 1));
-      bench.note(o, fmt::format("top displacement against {} load steps", 2 * most), top.back());
+      stress.add(1.0 / count, stress_error(o, column));
+      top.add(1.0 / count, std::abs(settled / finest - 1));
+      bench.note(o, fmt::format("top displacement against {} load steps", 2 * most), top.y.back());
     }
-    chart.series.push_back(convergence(fmt::format("{}, top against {} steps", shape, 2 * most), share, top, colour));
-    Series exact{fmt::format("{}, stress against the closed form", shape), share, stress, colour++};
-    exact.dashed = exact.marks = true;
-    chart.series.push_back(exact);
+    chart.series.push_back(convergence(top));
+    chart.series.push_back(stress);
   }
   bench.picture("A1b-steps", png_of(chart));
 }
@@ -246,9 +228,8 @@ void large_compaction(Bench& bench) {
                           "error, mean of |P − P exact| over stress at the foot"),
         profile = stress_chart(soft_column, "A1b: stress in a column compacted to a third (h = 50 m / 2⁵)");
   int colour = 1;
-  for (const Refinement& study : refinements) {
+  for (const Refinement& study : refinements)
     if (study.always || bench.complete()) order_study(bench, study, chart, profile, colour++);
-  }
   bench.picture("A1b-convergence", png_of(chart));
   bench.picture("A1b-stress", png_of(profile, 1400, 1100));
   load_step_study(bench, soft_column);

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A4: time and memory of a step over the number of points, and the share of its parts (the paper's Tables 3 and 4, Figs
-// 14 and 15).
+// A4: time and memory of a step over the number of points, and the share of its parts (Tables 3, 4, Figs 14, 15).
 #include <fmt/format.h>
 
 #include "tests/validation/cases.hpp"
@@ -12,25 +11,11 @@ namespace {
 
 constexpr double h = 0.01, step = 5e-5;
 
-/// What the paper measured on an RTX 3060 Ti: bytes of device memory in all, by thickness in cells; 0: not told.
-double pcg_memory(int cells) {
-  switch (cells) {
-    case 1:
-    case 2: return 0.7e9;
-    case 4: return 0.9e9;
-    case 8: return 1.1e9;
-    case 16: return 1.4e9;
-    default: return cells == 32 ? 2.1e9 : 0;
-  }
-}
-double cholesky_memory(int cells) { return cells == 8 ? 5.0e9 : 0; }
-double no_memory(int) { return 0; }
-
 struct Scheme {
   std::string name;
   Overrides overrides;
-  double paper_time;  // per point and step [s]
-  double (*paper_memory)(int);
+  double paper_time;                      // per point and step [s]
+  std::map<int, double> paper_memory;     // bytes on its RTX 3060 Ti, by thickness in cells
   std::vector<int> quick, complete, gpu;  // thickness in cells; `gpu`: beyond the paper's sizes
 };
 
@@ -39,16 +24,21 @@ std::vector<Scheme> schemes() {
                                  {"solve.shape", words("linear")}, {"solve.transfer", words("flip")},
                                  {"solve.transfer_time_s", 1e30},  {"solve.stress_update", words("musl")},
                                  {"solve.largest_step_s", step},   {"solve.cfl", 0.8}};
-  return {
-      {"PCG", {{"solve.implicit.linear_solver", words("pcg")}}, 2e-7, pcg_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}},
-      {"Cholesky",
-       {{"solve.implicit.linear_solver", words("cholesky")}},
-       5e-6,
-       cholesky_memory,
-       {1, 2},
-       {1, 2, 4, 8},
-       {16}},
-      {"explicit", explicit_steps, 1.6e-8, no_memory, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}}};
+  return {{"PCG",
+           {{"solve.implicit.linear_solver", words("pcg")}},
+           2e-7,
+           {{1, 0.7e9}, {2, 0.7e9}, {4, 0.9e9}, {8, 1.1e9}, {16, 1.4e9}, {32, 2.1e9}},
+           {1, 2},
+           {1, 2, 4, 8, 16, 32},
+           {128}},
+          {"Cholesky",
+           {{"solve.implicit.linear_solver", words("cholesky")}},
+           5e-6,
+           {{8, 5.0e9}},
+           {1, 2},
+           {1, 2, 4, 8},
+           {16}},
+          {"explicit", explicit_steps, 1.6e-8, {}, {1, 2}, {1, 2, 4, 8, 16, 32}, {128}}};
 }
 
 Overrides thick(int cells, int steps) {
@@ -60,10 +50,8 @@ Overrides thick(int cells, int steps) {
 
 /// Share of every phase of a step over the number of points.
 std::string shares(const std::string& name, const std::vector<Outcome>& runs) {
-  Chart chart;
-  chart.title = fmt::format("A4: share of each part of a step, {}", name);
-  chart.x_label = "material points";
-  chart.y_label = "share of the time [%]";
+  Chart chart = plain_chart(fmt::format("A4: share of each part of a step, {}", name), "material points",
+                            "share of the time [%]");
   chart.log_x = true;
   chart.y = Limits{0, 100};
   std::map<std::string, Series> parts;
@@ -71,11 +59,9 @@ std::string shares(const std::string& name, const std::vector<Outcome>& runs) {
   for (const Outcome& o : runs) {
     for (const auto& [phase, seconds] : o.run.summary.profile) {
       if (phase == "records and frames") continue;
-      Series& s = parts.try_emplace(phase, Series{phase, {}, {}, colour}).first->second;
+      Series& s = parts.try_emplace(phase, marked_line(phase, colour)).first->second;
       if (s.x.empty()) ++colour;
-      s.marks = true;
-      s.x.push_back(static_cast<double>(o.run.summary.particles));
-      s.y.push_back(100 * seconds / o.run.summary.wall_time);
+      s.add(static_cast<double>(o.run.summary.particles), 100 * seconds / o.run.summary.wall_time);
     }
   }
   for (const auto& [phase, series] : parts) chart.series.push_back(series);
@@ -95,11 +81,11 @@ struct SchemeLines {
 };
 
 SchemeLines lines_of(const Scheme& scheme, int colour) {
-  SchemeLines l{{scheme.name, {}, {}, colour},
-                {scheme.name, {}, {}, colour},
+  SchemeLines l{marked_line(scheme.name, colour),
+                marked_line(scheme.name, colour),
                 {scheme.name + ", paper (RTX 3060 Ti)", {}, {}, colour},
                 {}};
-  l.eta.marks = l.bytes.marks = l.paper.dashed = true;
+  l.paper.dashed = true;
   return l;
 }
 
@@ -112,18 +98,15 @@ void time_size(Bench& bench, const Scheme& scheme, int cells, SchemeLines& lines
   const RunSummary& s = o.run.summary;
   const double points = static_cast<double>(s.particles), each = s.wall_time / (points * static_cast<double>(s.steps));
   bench.note(o, "time per point and step [s]", each);
-  if (const double published = scheme.paper_memory(cells); published > 0) {
-    bench.at_most(o, "memory [GB]", s.memory / 1e9, published / 1e9);
+  if (const auto published = scheme.paper_memory.find(cells); published != scheme.paper_memory.end()) {
+    bench.at_most(o, "memory [GB]", s.memory / 1e9, published->second / 1e9);
   } else {
     bench.note(o, "memory [GB]", s.memory / 1e9);
   }
   if (!o.ok()) return;
-  lines.eta.x.push_back(points);
-  lines.eta.y.push_back(each);
-  lines.bytes.x.push_back(points);
-  lines.bytes.y.push_back(s.memory / 1e9);
-  lines.paper.x.push_back(points);
-  lines.paper.y.push_back(scheme.paper_time);
+  lines.eta.add(points, each);
+  lines.bytes.add(points, s.memory / 1e9);
+  lines.paper.add(points, scheme.paper_time);
   if (cells > 32) return;
   // Once more with its phases: waiting for each of them would count in the time above.
   Outcome phases = bench.run(variant + ", profile", overrides, true);

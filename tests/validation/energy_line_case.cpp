@@ -46,11 +46,8 @@ Overrides lay_out(const Bench& bench, const Terrain& terrain, const Facing& faci
   grid.south = std::floor(south / cell) * cell;
   grid.columns = static_cast<int>(std::ceil((east - grid.west) / cell));
   grid.rows = static_cast<int>(std::ceil((north - grid.south) / cell));
-  Raster ground{grid, std::vector<double>(grid.count())};
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column)
-      ground.at(column, row) = terrain.line.elevation(facing.along(grid.x(column), grid.y(row)));
-  }
+  const Raster ground =
+      at_centres(grid, [&](double x, double y) { return terrain.line.elevation(facing.along(x, y)); });
   const Raster heap = cell_means(grid, [&](double x, double y) {
     return std::abs(facing.along(x, y) - first) < 0.5 * heap_length && std::abs(facing.across(x, y)) < 0.5 * width
                ? thickness
@@ -78,10 +75,8 @@ Place place_of(const Points& points, const Facing& facing) {
 }  // namespace
 
 void energy_line(Bench& bench) {
-  Chart chart;
-  chart.title = "B3: way of the centre over the direction of descent";
-  chart.x_label = "direction of descent, from east [deg]";
-  chart.y_label = "way of the centre over that of a sliding point";
+  Chart chart = plain_chart("B3: way of the centre over the direction of descent",
+                            "direction of descent, from east [deg]", "way of the centre over that of a sliding point");
   int colour = 1;
   const std::vector<double> cells = bench.complete() ? std::vector<double>{20, 10}
                                     : bench.coarse() ? std::vector<double>{40}
@@ -90,17 +85,13 @@ void energy_line(Bench& bench) {
     for (const Way& how : ways) {
       if (!bench.complete() && (terrain.line.kind != GroundLine::parabola || &how != &ways[0])) continue;
       for (const double cell : cells) {
-        Series line{fmt::format("{}, {}, cells of {:g} m", terrain.name, how.name, cell), {}, {}, colour++};
-        line.marks = true;
+        Series line = marked_line(fmt::format("{}, {}, cells of {:g} m", terrain.name, how.name, cell), colour++);
         double eastwards = nothing;
         for (const double angle : {0.0, 120.0, 225.0}) {
           const Facing facing{angle};
-          const Outcome o = bench.run(
-              fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, how.name, cell, angle),
-              lay_out(bench, terrain, facing, cell) + Overrides{{"preprocess.grid.spacing_m", cell},
-                                                                {"preprocess.grid.layer_height_m", 0.25 * cell},
-                                                                {"solve.mapping", words(how.mapping)},
-                                                                {"solve.integrator", words(how.integrator)}});
+          const Outcome o =
+              bench.run(fmt::format("{}, {}, {:g} m, towards {:g} deg", terrain.name, how.name, cell, angle),
+                        lay_out(bench, terrain, facing, cell) + overrides_of(how, cell, 0.25 * cell));
           double way = nothing, aside = nothing, fall = nothing, expected = terrain.line.reach(first, mu) - first;
           if (o.ok()) {
             const Place start = place_of(o.first(), facing), end = place_of(o.last(), facing);
@@ -115,8 +106,7 @@ void energy_line(Bench& bench) {
           if (angle != 0) bench.compare(o, "way of the centre, against eastwards", way, eastwards, 0.02);
           bench.note(o, "fall over way", fall);
           bench.measure(o, "drift across, over the way", aside / way, 0.005);
-          line.x.push_back(angle);
-          line.y.push_back(way / expected);
+          line.add(angle, way / expected);
         }
         chart.series.push_back(line);
       }

@@ -65,8 +65,7 @@ constexpr Norms cap_thickness_tolerance{0.134, 0.201};
 /// to 8 layers makes that larger, not smaller (10.5 % and 20.6 %); the bound is what it may be said to stay below.
 constexpr Norms cap_speed_tolerance{0.15, 0.25};
 
-/// Upright thickness over a point of the map [m]: where the upright line from the plane meets the surface, which leans
-/// downhill against it.
+/// Upright thickness over a point of the map [m]: up to where the line meets the surface, which leans downhill.
 double upright(const ParabolicCap::State& s, double x, double y) {
   const double along = x / std::cos(cap.slope);
   double h = 0;
@@ -82,23 +81,9 @@ Overrides lay_out(const Bench& bench, double cell) {
   grid.rows = static_cast<int>(std::ceil(240 / cell)) | 1;
   grid.west = -110;
   grid.south = -0.5 * grid.rows * cell;
-  Raster plane{grid, std::vector<double>(grid.count())};
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column)
-      plane.at(column, row) = 500 - std::tan(cap.slope) * grid.x(column);
-  }
+  const Raster plane = at_centres(grid, [](double x, double) { return 500 - std::tan(cap.slope) * x; });
   const Raster thickness = cell_means(grid, [](double x, double y) { return upright(cap.at(0), x, y); });
   return write_scene(bench, fmt::format("{:g}", cell), plane, thickness);
-}
-
-/// Upright thickness over the middle of every cell of the map [m].
-std::vector<double> upright_on(const MapGrid& grid, const ParabolicCap::State& s) {
-  std::vector<double> h;
-  h.reserve(grid.count());
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) h.push_back(upright(s, grid.x(column), grid.y(row)));
-  }
-  return h;
 }
 
 /// How the points move down the slope, and how fast the reference is where they are.
@@ -132,8 +117,9 @@ CapErrors cap_errors(const Outcome& o) {
   if (!o.ok()) return {};
   const auto state = cap.at(o.last().time);
   const CapMotion motion = motion_of(o, state);
-  return {norms(o.run.frames.thickness.back(), upright_on(o.run.maps.grid, state)),
-          norms(motion.speed, motion.expected), motion.way / state.way - 1};
+  const Raster exact = at_centres(o.run.maps.grid, [&](double x, double y) { return upright(state, x, y); });
+  return {norms(o.run.frames.thickness.back(), exact.values), norms(motion.speed, motion.expected),
+          motion.way / state.way - 1};
 }
 
 /// Thickness down the middle of the map.
@@ -141,8 +127,7 @@ Series middle_section(const Outcome& o, const std::string& name, int colour) {
   const MapGrid& grid = o.run.maps.grid;
   Series line{name, {}, {}, colour};
   for (int column = 0; column < grid.columns; ++column) {
-    line.x.push_back(grid.x(column));
-    line.y.push_back(o.run.frames.thickness.back()[grid.index(column, grid.rows / 2)]);
+    line.add(grid.x(column), o.run.frames.thickness.back()[grid.index(column, grid.rows / 2)]);
   }
   return line;
 }
@@ -150,8 +135,7 @@ Series middle_section(const Outcome& o, const std::string& name, int colour) {
 Series exact_section() {
   Series exact{"Hutter et al. 1993", {}, {}, 0};
   for (int x = -90; x <= 130; ++x) {
-    exact.x.push_back(x);
-    exact.y.push_back(upright(cap.at(5), x, 0));
+    exact.add(x, upright(cap.at(5), x, 0));
   }
   return exact;
 }
@@ -226,50 +210,38 @@ constexpr double dam_aspect = 4;
 /// @param layer height of a layer [m]
 Overrides dam_scene(const Way& way, double layer) {
   const double cell = dam_aspect * layer;
-  return {{"preprocess.grid.spacing_m", cell},
-          {"preprocess.grid.layer_height_m", layer},
-          {"preprocess.laboratory.cells[0]", whole(std::lround(100 / cell) + 8)},
-          {"preprocess.laboratory.corner_m[0]", -54 - 3.5 * cell},
-          {"preprocess.laboratory.corner_m[1]", -3.5 * cell},
-          {"preprocess.box[0].extent_m[3]", cell},
-          {"solve.mapping", words(way.mapping)},
-          {"solve.integrator", words(way.integrator)},
-          {"solve.wall[1].position_m", cell}};
+  return overrides_of(way, cell, layer) +
+         Overrides{{"preprocess.laboratory.cells[0]", whole(std::lround(100 / cell) + 8)},
+                   {"preprocess.laboratory.corner_m[0]", -54 - 3.5 * cell},
+                   {"preprocess.laboratory.corner_m[1]", -3.5 * cell},
+                   {"preprocess.box[0].extent_m[3]", cell},
+                   {"solve.wall[1].position_m", cell}};
 }
 
 }  // namespace
 
 void parabolic_cap(Bench& bench) {
-  Chart errors = error_chart(bench), section;
-  section.title = "B4: parabolic cap on a plane after 5 s, down its middle";
-  section.x_label = "map distance from where the middle began [m]";
-  section.y_label = "thickness, upright [m]";
+  Chart errors = error_chart(bench),
+        section = plain_chart("B4: parabolic cap on a plane after 5 s, down its middle",
+                              "map distance from where the middle began [m]", "thickness, upright [m]");
   const auto layer_of = [](int layers) { return cap.depth / std::cos(cap.slope) / layers; };
   std::map<int, Overrides> scenes;  // one for all ways
   for (const int layers : layer_counts(bench)) scenes[layers] = lay_out(bench, 4 * layer_of(layers));
   int colour = 0;
   for (const Way& way : ways) {
-    ++colour;
-    std::vector<double> h, error;
+    Series error{way.name, {}, {}, ++colour};
     for (const int layers : layer_counts(bench)) {
-      const double layer = layer_of(layers), cell = 4 * layer;
+      const double layer = layer_of(layers);
       const std::string variant = fmt::format("{}, {} layers", way.name, layers);
-      const Outcome o = bench.run(variant, scenes[layers] + Overrides{{"preprocess.grid.spacing_m", cell},
-                                                                      {"preprocess.grid.layer_height_m", layer},
-                                                                      {"solve.mapping", words(way.mapping)},
-                                                                      {"solve.integrator", words(way.integrator)}});
-      if (o.ok()) {
-        const Series line = middle_section(o, variant, colour);
-        if (layers == 4) section.series.push_back(line);
-      }
+      const Outcome o = bench.run(variant, scenes[layers] + overrides_of(way, 4 * layer, layer));
+      if (o.ok() && layers == 4) section.series.push_back(middle_section(o, variant, colour));
       const CapErrors e = cap_errors(o);
       judge(bench, o, "thickness", e.thickness, cap_thickness_tolerance);
       judge(bench, o, "speed of the points", e.speed, cap_speed_tolerance);
       bench.measure(o, "way of the centre, over the reference's less one", e.way, cap_way_tolerance);
-      h.push_back(layer);
-      error.push_back(e.thickness.mean);
+      error.add(layer, e.thickness.mean);
     }
-    errors.series.push_back(convergence(way.name, h, error, colour));
+    errors.series.push_back(convergence(error));
   }
   section.series.insert(section.series.begin(), exact_section());
   bench.picture("B4-section", png_of(section));
@@ -277,14 +249,11 @@ void parabolic_cap(Bench& bench) {
 }
 
 void dam_break(Bench& bench) {
-  Chart errors = error_chart(bench), thickness;
-  thickness.title = "B5: dam break on a slope after 5 s";
-  thickness.x_label = "along the slope [m]";
-  thickness.y_label = "thickness [m]";
+  Chart errors = error_chart(bench),
+        thickness = plain_chart("B5: dam break on a slope after 5 s", "along the slope [m]", "thickness [m]");
   int colour = 0;
   for (const Way& way : ways) {
-    ++colour;
-    std::vector<double> h, error;
+    Series error{way.name, {}, {}, ++colour};
     for (const int layers : layer_counts(bench)) {
       const double layer = height / layers, cell = dam_aspect * layer;
       const Outcome o = bench.run(fmt::format("{}, {} layers", way.name, layers), dam_scene(way, layer));
@@ -293,8 +262,9 @@ void dam_break(Bench& bench) {
         const Profile computed = profile_of(o.last(), cell), exact = exact_at(computed.x, o.last().time);
         of_thickness = norms(computed.thickness, exact.thickness);
         of_discharge = norms(computed.discharge, exact.discharge);
-        Series s{fmt::format("{}, {} layers", way.name, layers), computed.x, computed.thickness, colour};
-        if (layers == 4) thickness.series.push_back(s);
+        if (layers == 4)
+          thickness.series.push_back(
+              {fmt::format("{}, {} layers", way.name, layers), computed.x, computed.thickness, colour});
       }
       judge(bench, o, "thickness", of_thickness, dam_thickness_tolerance(way.mapping, layers));
       if (std::string(way.mapping) == "cartesian") {
@@ -304,10 +274,9 @@ void dam_break(Bench& bench) {
       } else {
         judge(bench, o, "discharge", of_discharge, dam_discharge_tolerance);
       }
-      h.push_back(layer);
-      error.push_back(of_thickness.mean);
+      error.add(layer, of_thickness.mean);
     }
-    errors.series.push_back(convergence(way.name, h, error, colour));
+    errors.series.push_back(convergence(error));
   }
   std::vector<double> x;
   for (int n = 0; west + 0.25 * n <= east; ++n) x.push_back(west + 0.25 * n);

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// talus-validate: runs the validation cases through the programs, prints the table, writes validation.json and the
-// pictures.
+// talus-validate: runs the cases through the programs, prints the table, writes validation.json and the pictures.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -20,6 +19,43 @@ namespace {
 using namespace talus;
 using namespace talus::validation;
 namespace fs = std::filesystem;
+
+struct Case {
+  const char* name;  // as in validation.md; up to a hyphen that of its recipe's folder
+  const char* title;
+  bool quick;  // has rows that need no LONG=1
+  void (*run)(Bench&);
+  bool coarse = false;  // has rows on coarse grids, seconds a case
+};
+
+constexpr Case cases[] = {
+    {"A1", "self-weight column", true, self_weight_column},
+    {"A1b", "column compacted to a third", true, large_compaction},
+    {"A2", "cantilever with a load at its tip", true, cantilever},
+    {"A2-loads", "cantilever under growing load", false, cantilever_loads},
+    {"A2-studies", "cantilever over points per cell and load steps", false, cantilever_studies},
+    {"A3", "collapse of a sand column", true, sand_column, true},
+    {"A3-paper", "the same on the paper's grid with its 64 points per cell", false, sand_column_paper},
+    {"A3-studies", "reach of the sand column over points per cell and step", false, sand_column_studies},
+    {"A3-friction", "run-out of the sand column over damping and base friction", false, sand_column_friction},
+    {"A3b", "sand columns of other aspect ratios", false, sand_column_aspects, true},
+    {"A3c", "round columns of sand", false, round_sand_columns},
+    {"A4", "time and memory of a step", true, step_cost},
+    {"B1", "block on an incline", true, block_on_incline},
+    {"B2", "block on a bed that weakens with speed", true, velocity_weakening},
+    {"B3", "heap on curved ground, facing any direction", true, energy_line, true},
+    {"B4", "parabolic cap on a plane", true, parabolic_cap, true},
+    {"B5", "dam break on a slope", true, dam_break, true},
+    {"B6", "vibrating bar, free fall, patch test", true, elastic_motion},
+    {"B7", "block on shaking ground", true, shaken_block},
+    {"B8", "blocks of unknown friction, an ensemble", true, blocks_of_unknown_friction, true},
+    {"C1", "sand column in long steps", true, large_steps, true},
+    {"D1", "factor of safety of a homogeneous slope", true, homogeneous_slope, true},
+    {"D2", "the same on a foundation layer", true, slope_on_foundation},
+    {"D3", "factor of safety of a slope on a weak seam", true, slope_on_seam},
+    {"D4", "factor of safety of a wedge", true, rock_wedge},
+    {"D5", "factor of safety of an undrained vertical cut", true, undrained_cut},
+};
 
 struct Words {
   std::vector<std::string> names;
@@ -51,9 +87,7 @@ Words parse(int argc, char** argv) {
     std::exit(app.exit(error) == 0 ? 0 : 2);
   }
   for (const auto& name : w.names) {
-    bool known = false;
-    for (const Case& c : cases()) known = known || name == c.name;
-    if (known) continue;
+    if (std::ranges::any_of(cases, [&](const Case& c) { return name == c.name; })) continue;
     fmt::print(stderr, "talus-validate: {}: no such case. talus-validate --list names them\n", name);
     std::exit(2);
   }
@@ -62,17 +96,13 @@ Words parse(int argc, char** argv) {
 
 bool wanted(const Words& words, const Case& c) {
   if (words.coarse ? !c.coarse : !c.quick && !words.complete) return false;
-  if (words.names.empty()) return true;
-  return std::find(words.names.begin(), words.names.end(), c.name) != words.names.end();
+  return words.names.empty() || std::ranges::find(words.names, c.name) != words.names.end();
 }
-
-/// Today, as 2026-11-22.
-std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))); }
 
 /// Runs the cases; returns what they cost.
 CostBook run_cases(const Words& words, const Request& request, std::vector<Row>& rows) {
   Sitting sitting{.commit = words.commit,
-                  .date = today(),
+                  .date = fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))),
                   .on = words.on,
                   .complete = words.complete,
                   .coarse = words.coarse,
@@ -82,10 +112,9 @@ CostBook run_cases(const Words& words, const Request& request, std::vector<Row>&
     write_text(request.out.parent_path() / (request.out.filename().string() + ".json"), as_json(sitting, rows));
   };
   CostBook costs;
-  for (const Case& c : cases()) {
+  for (const Case& c : cases)
     if (wanted(words, c)) sitting.cases.emplace_back(c.name);
-  }
-  for (const Case& c : cases()) {
+  for (const Case& c : cases) {
     if (!wanted(words, c)) continue;
     fmt::print(stderr, "{}: {}\n", c.name, c.title);
     Bench bench(c.name, request, keep);
@@ -125,7 +154,7 @@ int run(const Words& words) {
 int main(int argc, char** argv) {
   const Words words = parse(argc, argv);
   if (words.list) {
-    for (const Case& c : cases()) fmt::print("{:11} {}{}\n", c.name, c.title, c.quick ? "" : " (--long only)");
+    for (const Case& c : cases) fmt::print("{:11} {}{}\n", c.name, c.title, c.quick ? "" : " (--long only)");
     return 0;
   }
   try {

@@ -26,17 +26,14 @@ std::vector<double> energy_drift(const Outcome& o) {
   double peak = 0;
   for (const double k : kinetic) peak = std::max(peak, k);
   std::vector<double> drift;
-  for (std::size_t i = 0; i < kinetic.size(); ++i) {
+  for (std::size_t i = 0; i < kinetic.size(); ++i)
     drift.push_back((kinetic[i] + elastic[i] + potential[i] - kinetic[0] - elastic[0] - potential[0]) / peak);
-  }
   return drift;
 }
 
 void vibrating_bar(Bench& bench) {
-  Chart chart;
-  chart.title = "B6: energy of a vibrating bar, drift over the peak of the kinetic energy";
-  chart.x_label = "time [s]";
-  chart.y_label = "drift";
+  Chart chart =
+      plain_chart("B6: energy of a vibrating bar, drift over the peak of the kinetic energy", "time [s]", "drift");
   int colour = 1;
   for (const char* integrator : {"newmark", "explicit"}) {
     const Outcome o = bench.run(fmt::format("bar, {}", integrator), {{"solve.integrator", words(integrator)}});
@@ -45,8 +42,8 @@ void vibrating_bar(Bench& bench) {
     bench.compare(o, "period", o.ok() ? period_of(time, momentum) : nothing, exact, 0.01);
     const auto drift = o.ok() ? energy_drift(o) : std::vector<double>{nothing};
     bench.measure(o, "energy drift in three periods", drift.back(), 0.05);
-    Series s{integrator, time, drift, colour++};
-    if (o.ok()) chart.series.push_back(s);
+    if (o.ok()) chart.series.push_back({integrator, time, drift, colour});
+    ++colour;
   }
   bench.picture("B6-energy", png_of(chart));
 }

@@ -22,11 +22,18 @@ using Overrides = std::vector<std::pair<std::string, Value>>;
 inline Value words(std::string text) { return Value(std::move(text)); }
 inline Value whole(long number) { return Value(static_cast<std::int64_t>(number)); }
 
-/// Text of the recipe `base` with the overrides. Throws std::runtime_error: no such file, no TOML, a key that leads
-/// nowhere.
+/// Text of the recipe `base` with the overrides. Throws std::runtime_error: no file, no TOML, a key that leads nowhere.
 std::string recipe_with(const std::filesystem::path& base, const Overrides& overrides);
 
 /// a, then b.
 Overrides operator+(Overrides a, const Overrides& b);
+
+/// Cells of a size [m], with so many points along each side, on ground whose nodes lie at the planes of its walls.
+inline Overrides grid_of(double h, int per_cell) {
+  return {{"preprocess.grid.spacing_m", h},
+          {"preprocess.grid.points_per_cell", std::vector<std::int64_t>(3, per_cell)},
+          {"preprocess.laboratory.corner_m[0]", -3.5 * h},
+          {"preprocess.laboratory.corner_m[1]", -3.5 * h}};
+}
 
 }  // namespace talus::validation

@@ -73,9 +73,8 @@ std::string as_table(const std::vector<Row>& rows) {
   std::vector<Cells> lines{header};
   for (const Row& row : rows) lines.push_back(cells_of(row));
   std::array<std::size_t, 14> widths{};
-  for (const Cells& line : lines) {
+  for (const Cells& line : lines)
     for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
-  }
   std::string text;
   for (const Cells& line : lines) text += line_of(line, widths);
   std::string last;

@@ -22,8 +22,7 @@ struct Counts {
 };
 Counts count(const std::vector<Row>& rows);
 
-/// Columns padded; below the table what went wrong in runs without a result, and how many rows are judged, miss their
-/// tolerance and are noted.
+/// Columns padded; below the table what went wrong in runs, and how many rows are judged, failed and noted.
 std::string as_table(const std::vector<Row>& rows);
 
 /// An object of the sitting and the list `rows`; a number that is not known is null. A noted row has `judged` false,

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A3: the sand column of the reference paper, which collapses onto a rough floor.
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "tests/validation/sand_deposit.hpp"
+#include <fmt/format.h>
+
+#include "tests/validation/sand.hpp"
 
 namespace talus::validation {
 namespace {
@@ -22,29 +22,18 @@ std::string outlines(const Outcome& o, const Sand& s, const std::string& title) 
   std::vector<Chart> panels;
   for (const double time : {0.0, 0.15, 0.3, 0.6, 1.2}) {
     const std::size_t frame = frame_at(o, gate_opens + time);
-    Chart panel;
-    panel.title = time == 0 ? title : "";
-    panel.y_label = "z [m]";
+    Chart panel = plain_chart(time == 0 ? title : "", time > 1 ? "x [m]" : "", "z [m]");
     panel.equal_scales = true;
     panel.x = Limits{-0.02, 1.0};
     panel.y = Limits{0, time == 0 ? 0.67 : time < 0.2 ? 0.58 : time < 0.4 ? 0.42 : 0.25};
-    Series points{time == 0 ? "as the gate goes" : fmt::format("{:g} s later", time), {}, {}, 5};
-    for (const auto& p : o.frames.at(frame).position) {
-      points.x.push_back(p[0]);
-      points.y.push_back(p[2]);
-    }
-    points.line = false;
-    points.marks = true;
-    points.mark_size = std::clamp(400 * s.point_spacing(), 1.2, 5.0);
+    Series points = marks_of(time == 0 ? "as the gate goes" : fmt::format("{:g} s later", time), 5,
+                             std::clamp(400 * s.point_spacing(), 1.2, 5.0));
+    for (const auto& p : o.frames.at(frame).position) points.add(p[0], p[2]);
     panel.series.push_back(points);
     panel.series.push_back(outline_of(o, frame, s, 2));
     if (time > 1) {
-      panel.x_label = "x [m]";
-      const double aspect = s.height / s.width;
-      panel.series.push_back(
-          laboratory("Lube et al. 2005: height, run-out", s, lube_run_out(aspect), lube_height(aspect), 1));
-      panel.series.push_back(
-          laboratory("Lajeunesse et al. 2005", s, lajeunesse_run_out(aspect), lajeunesse_height(aspect), 3));
+      for (const Series& found : channel_laboratories("Lube et al. 2005: height, run-out", s))
+        panel.series.push_back(found);
     }
     panels.push_back(panel);
   }
@@ -79,15 +68,12 @@ std::vector<Stepping> steppings(const Bench& bench) {
 }
 
 void refinement(Bench& bench, const std::vector<int>& levels) {
-  Chart chart;
-  chart.title = "A3: run-out over cell size, 27 points per cell";
-  chart.x_label = "cell size [m]";
-  chart.y_label = "(d end − d start) / d start";
+  Chart chart =
+      plain_chart("A3: run-out over cell size, 27 points per cell", "cell size [m]", "(d end − d start) / d start");
   int colour = 1;
   std::vector<double> h;
   for (const Stepping& stepping : steppings(bench)) {
-    Series line{stepping.name, {}, {}, colour++};
-    line.marks = true;
+    Series line = marked_line(stepping.name, colour++);
     for (const int level : levels) {
       Sand s;
       s.h = 0.09 / (1 << level);
@@ -95,8 +81,7 @@ void refinement(Bench& bench, const std::vector<int>& levels) {
       const Collapse c =
           collapse(bench, fmt::format("{}, h = 0.09 / {}", stepping.name, 1 << level), s,
                    {{"solve.shape", words(stepping.shape)}, {"solve.integrator", words(stepping.integrator)}});
-      line.x.push_back(s.h);
-      line.y.push_back(c.front / s.width - 1);
+      line.add(s.h, c.front / s.width - 1);
       if (level == levels.back() && c.outcome.ok()) {
         bench.picture(stepping.picture,
                       outlines(c.outcome, s, fmt::format("A3: sand column, {}, h = {:g} m", stepping.name, s.h)));
@@ -140,31 +125,27 @@ struct ReachStudy {
 Series reach_over_points(ReachStudy study, int colour) {
   study.sand.per_cell = 7;
   const double most_points = study.explicit_reach(0.25);
-  std::vector<double> spacing, difference;
+  Series difference{study.shape, {}, {}, colour};
   for (const int per_cell : {2, 3, 4, 5}) {
     study.sand.per_cell = per_cell;
-    spacing.push_back(1.0 / per_cell);
-    difference.push_back(std::abs(study.explicit_reach(0.25) / most_points - 1));
+    difference.add(1.0 / per_cell, std::abs(study.explicit_reach(0.25) / most_points - 1));
   }
-  return convergence(study.shape, spacing, difference, colour);
+  return convergence(difference);
 }
 
 /// Explicit and Newmark steps, against the shortest.
 std::vector<Series> reach_over_step(ReachStudy study, int colour) {
   study.sand.per_cell = 3;
   const double shortest = study.explicit_reach(0.02);
-  std::vector<double> cfl, by_step, over_cfl, by_implicit_step;
-  for (const double step : {0.5, 0.25, 0.1, 0.05}) {
-    cfl.push_back(step);
-    by_step.push_back(std::abs(study.explicit_reach(step) / shortest - 1));
-  }
-  for (const double step : {1.0, 3.0, 10.0, 30.0}) {
-    over_cfl.push_back(step);
-    by_implicit_step.push_back(std::abs(study.newmark_reach(step) / shortest - 1));
-  }
-  Series implicit = convergence(fmt::format("{}, newmark", study.shape), over_cfl, by_implicit_step, colour);
+  Series by_cfl{fmt::format("{}, explicit", study.shape), {}, {}, colour};
+  Series by_newmark{fmt::format("{}, newmark", study.shape), {}, {}, colour};
+  for (const double step : {0.5, 0.25, 0.1, 0.05})
+    by_cfl.add(step, std::abs(study.explicit_reach(step) / shortest - 1));
+  for (const double step : {1.0, 3.0, 10.0, 30.0})
+    by_newmark.add(step, std::abs(study.newmark_reach(step) / shortest - 1));
+  Series implicit = convergence(by_newmark);
   implicit.dashed = true;
-  return {convergence(fmt::format("{}, explicit", study.shape), cfl, by_step, colour), implicit};
+  return {convergence(by_cfl), implicit};
 }
 
 }  // namespace
@@ -177,8 +158,8 @@ void coarse_column(Bench& bench) {
   s.per_cell = 3;
   const Outcome o =
       bench.run("quadratic, h = 0.09 / 2", overrides_of(s) + Overrides{{"solve.shape", words("quadratic")}});
-  bench.compare(o, "run-out over width", o.ok() ? front_of(o.last(), s) / s.width - 1 : nothing, 5.17, 0.08);
-  bench.compare(o, "height over width", o.ok() ? top_of(o.last(), s) / s.width : nothing, 2.23, 0.05);
+  bench.compare(o, "run-out over width", run_out_of(o, s), 5.17, 0.08);
+  bench.compare(o, "height over width", height_of(o, s), 2.23, 0.05);
   bench.measure(o, "kinetic energy at the end over its peak", unrest(o), 1e-3);
 }
 
@@ -201,8 +182,7 @@ void sand_column_paper(Bench& bench) {
   }
 }
 
-/// Reach of 99 % over points per cell and over the step, cells of 0.0225 m: against the most points and the shortest
-/// steps.
+/// Reach of 99 % over points per cell and over the step, cells of 0.0225 m, against the most and the shortest.
 void sand_column_studies(Bench& bench) {
   Chart points = log_chart("A3: reach over points per cell, h = 0.0225 m", "distance of the points over cell size",
                            "difference of the reach of 99 % to 343 points per cell");
@@ -223,15 +203,12 @@ void sand_column_studies(Bench& bench) {
 
 /// Run-out over damping and base friction (the paper's Fig. 13a).
 void sand_column_friction(Bench& bench) {
-  Chart chart;
-  chart.title = "A3: run-out over base friction and damping, h = 0.015 m";
-  chart.x_label = "friction coefficient of the floor";
-  chart.y_label = "run-out [m]";
+  Chart chart = plain_chart("A3: run-out over base friction and damping, h = 0.015 m",
+                            "friction coefficient of the floor", "run-out [m]");
   chart.series.push_back({"Lube et al. 2005", {0.3, 0.7}, {0.8145, 0.8145}, 0});
   int colour = 1;
   for (const double damping : {0.0, 0.05, 0.1, 0.2}) {
-    Series line{fmt::format("damping {:g}", damping), {}, {}, colour++};
-    line.marks = true;
+    Series line = marked_line(fmt::format("damping {:g}", damping), colour++);
     for (const double mu : {0.3, 0.4, 0.5, 0.55, 0.6, 0.7}) {
       Sand s;
       s.h = 0.015;
@@ -240,13 +217,169 @@ void sand_column_friction(Bench& bench) {
           bench.run(fmt::format("damping {:g}, floor {:g}", damping, mu),
                     overrides_of(s) + Overrides{{"solve.damping", damping},
                                                 {"solve.base.friction_angle_deg", std::atan(mu) * 180 / M_PI}});
-      line.x.push_back(mu);
-      line.y.push_back(o.ok() ? front_of(o.last(), s) : nothing);
+      line.add(mu, o.ok() ? front_of(o.last(), s) : nothing);
       bench.note(o, "run-out [m]", line.y.back());
     }
     chart.series.push_back(line);
   }
   bench.picture("A3-friction", png_of(chart));
+}
+
+namespace {
+
+/// The column of an aspect ratio on cells of about a `cells`th of its height, a whole number across (walls at nodes).
+Sand column_of(double aspect, double cells) {
+  Sand s;
+  s.height = aspect * s.width;
+  s.h = s.width / static_cast<double>(std::max(1L, std::lround(cells / aspect)));
+  return s;
+}
+
+/// Two profiles, on coarse and on fine cells, and what they are held against.
+struct Profiles {
+  Series coarse, fine;
+  std::vector<Series> laboratories;
+};
+
+/// The profiles of columns of some aspect ratios, one panel each.
+class ProfilePicture {
+ public:
+  explicit ProfilePicture(std::string x_label) : x_label_(std::move(x_label)) {}
+
+  void add(double aspect, Profiles p) {
+    if (p.coarse.x.empty() || p.fine.x.empty()) return;
+    Chart panel = plain_chart(fmt::format("aspect ratio {:g}", aspect), x_label_, "z [m]");
+    panel.equal_scales = true;
+    double far = 0, high = 0;
+    p.coarse.name = "computed";
+    p.coarse.dashed = true;
+    p.fine.name = "computed, cells half as large";
+    panel.series = {p.coarse, p.fine};
+    panel.series.insert(panel.series.end(), p.laboratories.begin(), p.laboratories.end());
+    for (const Series& s : panel.series) {
+      for (const double x : s.x) far = std::isfinite(x) ? std::max(far, x) : far;
+      for (const double y : s.y) high = std::isfinite(y) ? std::max(high, y) : high;
+    }
+    panel.x = Limits{-0.02 * far, 1.05 * far};
+    panel.y = Limits{0, std::max(1.6 * high, 0.2 * far)};  // with room for the legend
+    panels_.push_back(panel);
+  }
+  std::string png() const { return png_of_panels(panels_); }
+
+ private:
+  std::string x_label_;
+  std::vector<Chart> panels_;
+};
+
+/// Columns of one aspect ratio with 16 cells along the height and 32, and what halving the cells moves.
+Collapse halved(Bench& bench, double aspect, Profiles& profiles) {
+  Collapse result;
+  double before = nothing;
+  Series& coarse = profiles.coarse;
+  for (const bool finer : {false, true}) {
+    Sand s = column_of(aspect, 16);
+    if (finer) s.h /= 2;
+    result = collapse(bench, fmt::format("a = {:g}, h = {:.2g} mm", aspect, 1000 * s.h), s, {});
+    const bool ran = result.outcome.ok();
+    if (ran)
+      (finer ? profiles.fine : coarse) = outline_of(result.outcome, result.outcome.frames.size() - 1, s, finer ? 2 : 4);
+    if (finer) {
+      bench.measure(result.outcome, "run-out that halving the cells moves", result.front / before - 1, 0.03);
+      if (ran && !coarse.x.empty())
+        bench.note(result.outcome, "profile moved over height", profile_difference(coarse, profiles.fine));
+    }
+    before = result.front;
+  }
+  profiles.laboratories = channel_laboratories("Lube et al. 2005", column_of(aspect, 16));
+  return result;
+}
+
+/// A quarter of a round column from strips of a sixteenth of its radius along y, each as far along x as the circle,
+/// rounded to a sixteenth as well.
+Overrides round_column(const Sand& s) {
+  constexpr int strips = 16;
+  const double wide = s.width / strips, reach = s.width * (1 + 1.5 * round_run_out(s.height / s.width));
+  const long columns = std::lround(reach / s.h) + 8;
+  Overrides all = grid_of(s.h, s.per_cell) + Overrides{{"preprocess.laboratory.cells[0]", whole(columns)},
+                                                       {"preprocess.laboratory.cells[1]", whole(columns)}};
+  for (int n = 0; n < strips; ++n) {
+    const double y = (n + 0.5) / strips, east = wide * std::round(strips * std::sqrt(1 - y * y));
+    const std::string box = fmt::format("preprocess.box[{}].", n);
+    all = all + Overrides{{box + "name", words(fmt::format("strip {}", n + 1))},
+                          {box + "extent_m", std::vector<double>{0, n * wide, east, (n + 1) * wide, 0, s.height}}};
+  }
+  return all;
+}
+
+/// The points with their distance from the axis for x.
+Points by_radius(Points points) {
+  for (auto& p : points.position) p = {std::hypot(p[0], p[1]), 0, p[2]};
+  return points;
+}
+
+}  // namespace
+
+/// A square column on four cells, as short of where refinement leads as A3's coarse one.
+void coarse_aspect(Bench& bench) {
+  Sand s = column_of(1, 4);
+  s.per_cell = 3;
+  const Outcome o = bench.run("a = 1, 4 cells", overrides_of(s));
+  bench.compare(o, "run-out over width", run_out_of(o, s), 0.81, 0.08);
+  bench.compare(o, "height over width", height_of(o, s), 0.945, 0.05);
+}
+
+void sand_column_aspects(Bench& bench) {
+  if (bench.coarse()) return coarse_aspect(bench);
+  Chart chart = log_chart("A3b: run-out over aspect ratio, one set of parameters", "aspect ratio, height over width",
+                          "(d end − d start) / d start");
+  const auto draw = [](const std::string& name, double (*law)(double), double first, double step, int count) {
+    Series line{name, {}, {}, 0};
+    for (int n = 0; n < count; ++n) {
+      line.x.push_back(first + n * step);
+      line.y.push_back(law(line.x.back()));
+    }
+    return line;
+  };
+  Series ours = marks_of("computed, some 32 cells along the height", 2, 10);
+  ProfilePicture pictures("x [m]");
+  for (const double aspect : {0.5, 1.0, 1.5, 3.0, 5.0, 7.0, 9.0}) {
+    Profiles profiles;
+    const Collapse c = halved(bench, aspect, profiles);
+    if (aspect == 0.5 || aspect == 1 || aspect == 3 || aspect == 7) pictures.add(aspect, profiles);
+    ours.add(aspect, c.front / Sand{}.width - 1);
+  }
+  Series wide = draw("Lajeunesse et al. 2005", lajeunesse_run_out, 0.4, 0.1, 90);
+  wide.colour = 3;
+  chart.series = {draw("Lube et al. 2005", lube_run_out, 0.4, 0.1, 14), draw("", lube_run_out, 2.81, 0.5, 14), wide,
+                  ours};
+  bench.picture("A3b-run-out", png_of(chart));
+  bench.picture("A3b-profiles", pictures.png());
+}
+
+/// Round columns, as a quarter between two rollers; run-out and height by the laws of one laboratory.
+void round_sand_columns(Bench& bench) {
+  ProfilePicture pictures("distance from the axis [m]");
+  for (const double aspect : {0.5, 1.0, 2.0, 4.0}) {
+    const Band run_out = band_of(round_run_out(aspect), nothing), height = band_of(round_height(aspect), nothing);
+    double before = nothing;
+    Profiles profiles{{}, {}, {laboratory("Lube et al. 2004", Sand{}, round_run_out(aspect), round_height(aspect), 1)}};
+    for (const double cells : {8.0, 16.0}) {
+      Sand s = column_of(aspect, static_cast<int>(std::lround(cells * std::max(1.0, aspect))));
+      s.per_cell = s.h > s.width / 8 ? 4 : 3;
+      if (std::lround(s.width / s.h) % 16 != 0) s.per_cell = 4;
+      const Outcome o =
+          bench.run(fmt::format("a = {:g}, h = radius / {}", aspect, std::lround(s.width / s.h)), round_column(s));
+      const double front = o.ok() ? front_of(by_radius(o.last()), s) / s.width - 1 : nothing;
+      bench.within(o, "run-out over radius", front, run_out.low, run_out.high);
+      if (std::isfinite(height.low)) bench.within(o, "height over radius", height_of(o, s), height.low, height.high);
+      if (std::isfinite(before))
+        bench.measure(o, "run-out that halving the cells moves", (1 + front) / (1 + before) - 1, 0.03);
+      before = front;
+      if (o.ok()) (cells < 16 ? profiles.coarse : profiles.fine) = outline_of_quarter(o.last(), s, cells < 16 ? 4 : 2);
+    }
+    pictures.add(aspect, profiles);
+  }
+  bench.picture("A3c-profiles", pictures.png());
 }
 
 }  // namespace talus::validation

@@ -6,8 +6,7 @@
 
 namespace talus::validation {
 
-/// A plane face of height one between level ground, on a firm base. Lengths in heights, stresses in unit weight times
-/// height.
+/// A plane face of height one between level ground, on a firm base. Stresses in unit weight times height.
 struct EarthSlope {
   double cotangent = 2;  ///< of the face
   double cohesion = 0;   ///< [-]

@@ -1,32 +1,27 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// C1: the sand column of A3 in steps by columns and in Newmark's of 1 to 30 times the CFL step, against explicit steps
-// on the same grid.
+// C1: the sand column of A3 in steps by columns and in Newmark's of 1 to 30 CFL steps, against explicit steps.
 #include <fmt/format.h>
 
 #include "tests/validation/cases.hpp"
 #include "tests/validation/chart.hpp"
-#include "tests/validation/sand_scene.hpp"
+#include "tests/validation/sand.hpp"
 
 namespace talus::validation {
 namespace {
 
 /// Mean distance of the points from the wall at the end [m].
 double centre_of(const Outcome& o) {
-  if (!o.ok()) return std::numeric_limits<double>::quiet_NaN();
+  if (!o.ok()) return nothing;
   double sum = 0;
   for (const auto& p : o.last().position) sum += p[0];
   return sum / static_cast<double>(o.last().size());
 }
 
-double reach_of(const Outcome& o) { return o.ok() ? reach_of(o.last()) : std::numeric_limits<double>::quiet_NaN(); }
+double reach_of(const Outcome& o) { return o.ok() ? reach_of(o.last()) : nothing; }
+double end_of(const Outcome& o, const Sand& s) { return o.ok() ? front_of(o.last(), s) : nothing; }
 
-double end_of(const Outcome& o, const Sand& s) {
-  return o.ok() ? front_of(o.last(), s) : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// Runs on one grid, judged by explicit steps of a tenth of the CFL step; on the coarse one by a quarter, and the reach
-/// to a cell of its tip, 8 %.
+/// Runs on one grid, judged by explicit steps of a tenth of a CFL step; coarse: of a quarter, and the reach by 8 %.
 class ShortSteps {
  public:
   ShortSteps(Bench& bench, const Sand& sand)
@@ -68,8 +63,7 @@ class ShortSteps {
 Series newmark_line(const ShortSteps& against, const std::vector<double>& lengths, int colour) {
   const double cfl_step = 4.27e-4 * against.sand().h / 0.0225;  // cell over wave speed and square root of three [s]
   Bench& bench = against.bench();
-  Series line{"newmark", {}, {}, colour};
-  line.marks = true;
+  Series line = marked_line("newmark", colour);
   for (const double over_cfl : lengths) {
     const Outcome o =
         against.run(fmt::format("newmark, {:g} CFL", over_cfl), {{"solve.implicit.step_s", over_cfl * cfl_step}});
@@ -90,8 +84,7 @@ Series newmark_line(const ShortSteps& against, const std::vector<double>& length
 Series cfl_line(const ShortSteps& against, Series line, const std::vector<double>& lengths, double tolerance) {
   line.marks = true;
   for (const double cfl : lengths) {
-    line.x.push_back(cfl);
-    line.y.push_back(against.judge(against.run_at(line.name.c_str(), cfl), tolerance));
+    line.add(cfl, against.judge(against.run_at(line.name.c_str(), cfl), tolerance));
   }
   return line;
 }
@@ -99,10 +92,8 @@ Series cfl_line(const ShortSteps& against, Series line, const std::vector<double
 /// All steps on one grid against the shortest; the lengths of implicit ones in CFL steps.
 void compare_steps(Bench& bench, const Sand& s, const std::vector<double>& lengths) {
   const ShortSteps against(bench, s);
-  Chart chart;
-  chart.title = "C1: sand column, centre of mass over the step" + against.grid();
-  chart.x_label = "step over the CFL step";
-  chart.y_label = fmt::format("difference to explicit steps of {:g} CFL [%]", against.shortest());
+  Chart chart = plain_chart("C1: sand column, centre of mass over the step" + against.grid(), "step over the CFL step",
+                            fmt::format("difference to explicit steps of {:g} CFL [%]", against.shortest()));
   chart.log_x = true;
   chart.series.push_back(newmark_line(against, lengths, 1));
   const bool coarse = bench.coarse();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the laws without a friction coefficient have in common: no options, no numbers, no force that follows from slip.
+// The laws without a friction coefficient: no options, no numbers, no force that follows from slip.
 #pragma once
 
 #include "solver/boundary/laws/basal_law.hpp"
@@ -15,12 +15,17 @@ struct FrictionlessLaw : BasalLaw {
 
   /// The law has no keys.
   struct Options {
-    /// There are no keys.
     void describe(recipe::Visitor&, const LawTable&) {}
   };
-  /// Whether the law looks at a key: at none.
   static bool uses(std::string_view) { return false; }
-  /// There are no numbers.
+  template <class All>
+  static std::string words(const All&) {
+    return Law::in_words;
+  }
+  template <class All>
+  static std::string sentence(const All&) {
+    return Law::in_a_sentence;
+  }
   template <class All>
   static void numbers(const All&, const BedSetting&, double*) {}
 
@@ -29,6 +34,19 @@ struct FrictionlessLaw : BasalLaw {
   TALUS_HD static Real coefficient(const LawNumbers<Real>&, const Slip<Real>&) {
     return Real(0);
   }
+};
+
+/// The law of a bed without friction.
+struct NoFriction : FrictionlessLaw<NoFriction> {
+  static constexpr std::string_view name = "none";
+  static constexpr const char *in_words = "no friction", *in_a_sentence = "no friction";
+};
+
+/// The law of a bed that holds what presses on it.
+struct Stick : FrictionlessLaw<Stick> {
+  static constexpr std::string_view name = "stick";
+  static constexpr bool holds = true;
+  static constexpr const char *in_words = "held", *in_a_sentence = "no slip";
 };
 
 }  // namespace talus

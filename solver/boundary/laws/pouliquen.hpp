@@ -55,19 +55,16 @@ struct Pouliquen : BasalLaw {
            "what rests would be held less than what stops", "Give theta_3 of theta_1 at least"});
     }
   };
-  /// Whether the law looks at a key.
   static bool uses(std::string_view key) {
     return key == "stop_angle_deg" || key == "steepest_angle_deg" || key == "start_angle_deg" ||
            key == "layer_length_m" || key == "flow_rule_slope" || key == "flow_rule_offset";
   }
-  /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
     return "pouliquen, " + six_digits(o.stop_angle) + ", " + six_digits(o.steepest_angle) + " and " +
            six_digits(o.start_angle) + " deg, L = " + six_digits(o.layer_length) +
            " m, beta = " + six_digits(o.flow_rule_slope) + ", Gamma = " + six_digits(o.flow_rule_offset);
   }
-  /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
   static std::string sentence(const All& o) {
     return "friction by depth and Froude number (Pouliquen & Forterre 2002) between " + six_digits(o.stop_angle) +
@@ -77,7 +74,6 @@ struct Pouliquen : BasalLaw {
 
   /// The numbers that kernels see: tan(theta_1), tan(theta_2) - tan(theta_1), tan(theta_3) [-], L [m].
   enum Number { deep, spread, resting, length, count };
-  /// This function makes the numbers from the options of all laws.
   template <class All>
   static void numbers(const All& o, const BedSetting& setting, double* n) {
     const auto borne = [&](double angle) { return setting.borne * std::tan(angle * (std::numbers::pi / 180)); };
@@ -87,7 +83,6 @@ struct Pouliquen : BasalLaw {
     n[length] = o.layer_length;
   }
   enum Constant { slope, offset, density, constant_count };  ///< those of the scene
-  /// This function makes the numbers of the scene from the options of all laws.
   template <class All>
   static void constants(const All& o, const BedSetting& setting, double* c) {
     c[slope] = o.flow_rule_slope;

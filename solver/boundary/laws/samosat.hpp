@@ -22,23 +22,19 @@ struct Samosat : BasalLaw {
     double roughness = 0.05;              ///< R [m]
     double drag_offset = 4.13;            ///< B [-]
 
-    /// The method declares the keys with defaults and help.
     void describe(recipe::Visitor& v, const LawTable&) {
       v.number("friction_coefficient", friction_coefficient, recipe::not_negative,
                "samosat: mu, at high speed; at rest it is twice as much");
       v.number("minimum_shear_Pa", minimum_shear, recipe::not_negative, "samosat: tau_0, a traction at any speed");
     }
   };
-  /// Whether the law looks at a key.
   static bool uses(std::string_view key) { return key == "friction_coefficient" || key == "minimum_shear_Pa"; }
-  /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
     return "samosat, mu = " + six_digits(o.friction_coefficient) + ", tau_0 = " + six_digits(o.minimum_shear) +
            " Pa, R_s0 = " + six_digits(o.weakening_number) + ", kappa = " + six_digits(o.karman_constant) +
            ", R = " + six_digits(o.roughness) + " m, B = " + six_digits(o.drag_offset);
   }
-  /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
   static std::string sentence(const All& o) {
     return "SamosAT's law (Sampl & Zwinger 2004), mu = " + six_digits(o.friction_coefficient) +
@@ -48,21 +44,13 @@ struct Samosat : BasalLaw {
   }
 
   enum Number { mu, shear, count };  ///< as kernels see them: mu [-], tau_0 [Pa]
-  /// This function makes the numbers from the options of all laws.
   template <class All>
   static void numbers(const All& o, const BedSetting& setting, double* n) {
     n[mu] = setting.borne * o.friction_coefficient;
     n[shear] = o.minimum_shear;
   }
-  enum Constant {
-    weakening,
-    inverse_karman,
-    offset,
-    rough,
-    density,
-    constant_count
-  };  ///< R_s0, 1/kappa, B [-], R [m], [kg/m3]
-  /// This function makes the numbers of the scene from the options of all laws.
+  /// Those of the scene: R_s0, 1/kappa, B [-], R [m], density [kg/m3].
+  enum Constant { weakening, inverse_karman, offset, rough, density, constant_count };
   template <class All>
   static void constants(const All& o, const BedSetting& setting, double* c) {
     c[weakening] = o.weakening_number;
@@ -87,7 +75,6 @@ struct Samosat : BasalLaw {
         Real(n.everywhere[offset] + (over_rough > Real(1) ? log(over_rough) * n.everywhere[inverse_karman] : Real(0)));
     return n.everywhere[density] * slip.speed * slip.speed / (profile * profile);
   }
-  /// Whether there is such a traction.
   template <class Real>
   TALUS_HD static bool drags(const LawNumbers<Real>&) {
     return true;
@@ -97,7 +84,6 @@ struct Samosat : BasalLaw {
   TALUS_HD static Real yield(const LawNumbers<Real>& n, const Slip<Real>&) {
     return n[shear];
   }
-  /// Whether there is such a traction.
   template <class Real>
   TALUS_HD static bool yields(const LawNumbers<Real>& n) {
     return n[shear] > Real(0);

@@ -19,7 +19,6 @@ struct FrictionTable : BasalLaw {
   struct Options {
     recipe::Pairs table{{0, 0.6}, {10, 0.25}};  ///< slip speeds [m/s] and coefficients [-]
 
-    /// The method declares the keys with defaults, help and what they need of one another.
     void describe(recipe::Visitor& v, const LawTable& law) {
       v.pairs("table", table, recipe::not_negative,
               "table: [[slip speed in m/s, friction coefficient], ...], at most 24 rows, each faster than the one "
@@ -33,14 +32,11 @@ struct FrictionTable : BasalLaw {
                "Sort the rows by speed, and leave out repeated speeds"});
     }
   };
-  /// Whether the law looks at a key.
   static bool uses(std::string_view key) { return key == "table"; }
-  /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
     return "table of " + std::to_string(o.table.size()) + " speeds, " + ends(o);
   }
-  /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
   static std::string sentence(const All& o) {
     return "friction by a table of " + std::to_string(o.table.size()) + " slip speeds, " + ends(o);
@@ -51,7 +47,6 @@ struct FrictionTable : BasalLaw {
   static void numbers(const All&, const BedSetting&, double*) {}
   /// The speeds [m/s], then the coefficients [-]; the last row fills what is left.
   enum Constant { speed, mu = most_rows, constant_count = 2 * most_rows };
-  /// This function makes the numbers of the scene from the options of all laws.
   template <class All>
   static void constants(const All& o, const BedSetting& setting, double* c) {
     for (std::size_t row = 0; row < most_rows; ++row) {

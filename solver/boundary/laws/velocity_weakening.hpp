@@ -12,7 +12,6 @@ namespace talus {
 struct VelocityWeakening : BasalLaw {
   static constexpr std::string_view name = "velocity-weakening";
 
-  /// The keys of the law.
   struct Options {
     double peak_coefficient = 0.7;
     double steady_coefficient = 0.23;
@@ -31,17 +30,14 @@ struct VelocityWeakening : BasalLaw {
                "velocity-weakening: speed of half the drop");
     }
   };
-  /// Whether the law looks at a key.
   static bool uses(std::string_view key) {
     return key == "peak_coefficient" || key == "steady_coefficient" || key == "characteristic_speed_m_s";
   }
-  /// The law in a line, for plan and log.
   template <class All>
   static std::string words(const All& o) {
     return "velocity-weakening, " + six_digits(o.peak_coefficient) + " to " + six_digits(o.steady_coefficient) +
            " about " + six_digits(o.characteristic_speed) + " m/s";
   }
-  /// The law in a sentence of the report, "at its bed acts ...".
   template <class All>
   static std::string sentence(const All& o) {
     return "friction that falls with slip speed (Lucas, Mangeney & Ampuero 2014) from " +
@@ -51,7 +47,6 @@ struct VelocityWeakening : BasalLaw {
 
   /// The numbers that kernels see: mu_s and mu_p [-], v_c [m/s].
   enum Number { steady, peak, characteristic_speed, count };
-  /// This function makes the numbers from the options of all laws.
   template <class All>
   static void numbers(const All& o, const BedSetting& setting, double* n) {
     n[steady] = setting.borne * o.steady_coefficient;

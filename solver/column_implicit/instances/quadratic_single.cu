@@ -3,9 +3,4 @@
 // The solver of column-implicit steps in single precision with quadratic B-splines.
 #include "solver/column_implicit/column_implicit_solver.hpp"
 
-namespace talus::solver {
-
-template std::unique_ptr<Solver> make_column_implicit_solver<float, Quadratic>(const Scene&, const IntegratorSettings&,
-                                                                               const AnyDevice&, const SolverState&);
-
-}  // namespace talus::solver
+template struct talus::solver::ColumnImplicitSolvers<float, talus::Quadratic>;

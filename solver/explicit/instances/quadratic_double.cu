@@ -3,9 +3,4 @@
 // The solver of explicit steps in double precision with quadratic B-splines.
 #include "solver/explicit/explicit_solver.hpp"
 
-namespace talus::solver {
-
-template std::unique_ptr<Solver> make_explicit_solver<double, Quadratic>(const Scene&, const IntegratorSettings&,
-                                                                         const AnyDevice&, const SolverState&);
-
-}  // namespace talus::solver
+template struct talus::solver::ExplicitSolvers<double, talus::Quadratic>;

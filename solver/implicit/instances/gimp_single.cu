@@ -3,10 +3,4 @@
 // The solver of implicit steps in single precision with hats averaged over the box of each particle.
 #include "solver/implicit/implicit_solver.hpp"
 
-namespace talus::solver {
-
-template std::unique_ptr<Solver> make_implicit_solver<float, Gimp>(const Scene&, const IntegratorSettings&,
-                                                                   const ImplicitControls&, const AnyDevice&,
-                                                                   const SolverState&);
-
-}  // namespace talus::solver
+template struct talus::solver::ImplicitSolvers<float, talus::Gimp>;

@@ -3,10 +3,4 @@
 // The solver of implicit steps in double precision with hats.
 #include "solver/implicit/implicit_solver.hpp"
 
-namespace talus::solver {
-
-template std::unique_ptr<Solver> make_implicit_solver<double, Linear>(const Scene&, const IntegratorSettings&,
-                                                                      const ImplicitControls&, const AnyDevice&,
-                                                                      const SolverState&);
-
-}  // namespace talus::solver
+template struct talus::solver::ImplicitSolvers<double, talus::Linear>;

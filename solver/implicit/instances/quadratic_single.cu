@@ -3,10 +3,4 @@
 // The solver of implicit steps in single precision with quadratic B-splines.
 #include "solver/implicit/implicit_solver.hpp"
 
-namespace talus::solver {
-
-template std::unique_ptr<Solver> make_implicit_solver<float, Quadratic>(const Scene&, const IntegratorSettings&,
-                                                                        const ImplicitControls&, const AnyDevice&,
-                                                                        const SolverState&);
-
-}  // namespace talus::solver
+template struct talus::solver::ImplicitSolvers<float, talus::Quadratic>;

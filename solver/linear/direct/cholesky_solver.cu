@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "solver/grid/instances.hpp"
-#include "solver/parallel/profile.hpp"
 
 namespace talus::solver {
 
@@ -22,8 +21,7 @@ LinearReport CholeskySolver<Real, Device, Shape>::solve(const PointTangents<Real
                                                         const NodeVector<Device>& b, NodeVector<Device>& x) {
   const int unknowns = assembly_.number_nodes(nodes);
   LinearReport report;
-  x.resize(static_cast<std::size_t>(nodes.count));
-  x.fill_zero();
+  x.resize_zeroed(static_cast<std::size_t>(nodes.count));
   if (unknowns == 0) {
     report.converged = true;
     return report;
@@ -59,11 +57,6 @@ LinearReport CholeskySolver<Real, Device, Shape>::solve(const PointTangents<Real
   report.indefinite = !report.converged;
   if (report.converged) assembly_.to_nodes(nodes, solution_, x);
   return report;
-}
-
-template <class Real, class Device, class Shape>
-std::size_t CholeskySolver<Real, Device, Shape>::bytes() const {
-  return stored_.bytes() + assembly_.bytes() + right_.bytes() + solution_.bytes() + left_over_.bytes();
 }
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class CholeskySolver<Real, Device, Shape>;

@@ -2,15 +2,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/linear/direct/csr_assembly.hpp"
 
-#include <algorithm>
 #include <atomic>
-#include <limits>
 
 #include "solver/grid/instances.hpp"
-#include "solver/linear/direct/csr_kernels.hpp"
-#include "solver/parallel/runs.hpp"
 
 namespace talus::solver {
+
+template <class Real, class Device, class Shape>
+void StoredElements<Real, Device, Shape>::assemble(const ElementList<Real, Device, Shape>& list,
+                                                   const PointTangents<Real>& from) {
+  rows_ = static_cast<std::size_t>(list.count()) * Matrices::size;
+  values_.resize(rows_ * Matrices::size);
+  sum_elements<Real, Device, Shape>(list, from, view());
+}
+
+#define TALUS_INSTANTIATE(Real, Device, Shape) template class StoredElements<Real, Device, Shape>;
+TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)
+#undef TALUS_INSTANTIATE
+
 namespace {
 
 struct Differ {
@@ -25,22 +34,10 @@ struct Differ {
 template <class Device>
 bool same(const Buffer<int, Device>& a, const Buffer<int, Device>& b, Buffer<int, Device>& differs) {
   if (a.size() != b.size()) return false;
-  differs.resize(1);
-  differs.fill_zero();
+  differs.resize_zeroed(1);
   for_each(differs.device(), static_cast<int>(a.size()), Differ{a.data(), b.data(), differs.data()});
   return differs.download().front() == 0;
 }
-
-/// The most triples and blocks there can be.
-template <class Shape>
-struct Bounds {
-  double triples, blocks;
-  Bounds(int elements, int freed_nodes) {
-    constexpr double each = Shape::width * Shape::width * Shape::width, side = 2 * Shape::width - 1;
-    triples = static_cast<double>(elements) * each * each;
-    blocks = std::min(triples, static_cast<double>(freed_nodes) * side * side * side);
-  }
-};
 
 long next_pattern() {
   static std::atomic<long> last{0};
@@ -48,22 +45,6 @@ long next_pattern() {
 }
 
 }  // namespace
-
-template <class Real, class Shape>
-double assembly_bytes(int elements, int freed_nodes) {
-  const Bounds<Shape> most(elements, freed_nodes);
-  // Key, order and the scratch of sorting both; runs; the block itself.
-  const double per_triple = 2 * (sizeof(std::uint64_t) + sizeof(int)) + 2 * sizeof(int) + 9 * sizeof(Real);
-  // Value and column index twice: as summed and in the order of elimination.
-  const double per_block = 9 * 2 * (sizeof(double) + sizeof(int));
-  return most.triples * per_triple + most.blocks * per_block;
-}
-
-template <class Real, class Shape>
-bool assembly_countable(int elements, int freed_nodes) {
-  const Bounds<Shape> most(elements, freed_nodes);
-  return std::max(most.triples, 9 * most.blocks) < static_cast<double>(std::numeric_limits<int>::max());
-}
 
 template <class Real, class Device, class Shape>
 int CsrAssembly<Real, Device, Shape>::number_nodes(const HeldNodes& nodes) {
@@ -144,30 +125,6 @@ void CsrAssembly<Real, Device, Shape>::to_nodes(const HeldNodes& nodes, const Bu
   to.resize(static_cast<std::size_t>(nodes.count));
   for_each(device_, nodes.count, ToNodes{numbers_.number_of.data(), nodes.freed, from.data(), to.data()});
 }
-
-template <class Real, class Device, class Shape>
-std::size_t CsrAssembly<Real, Device, Shape>::bytes() const {
-  std::size_t total = triples_.keys.bytes() + matrix_.bytes();
-  for (const auto* b :
-       {&numbers_.flags, &numbers_.new_flags, &numbers_.number_of, &numbers_.node_of, &triples_.order, &triples_.runs,
-        &triples_.scratch, &triples_.block_starts, &earlier_.differs, &earlier_.starts, &earlier_.columns}) {
-    total += b->bytes();
-  }
-  return total;
-}
-
-template double assembly_bytes<float, Linear>(int, int);
-template bool assembly_countable<float, Linear>(int, int);
-template double assembly_bytes<float, Quadratic>(int, int);
-template double assembly_bytes<float, Gimp>(int, int);
-template bool assembly_countable<float, Quadratic>(int, int);
-template bool assembly_countable<float, Gimp>(int, int);
-template double assembly_bytes<double, Linear>(int, int);
-template bool assembly_countable<double, Linear>(int, int);
-template double assembly_bytes<double, Quadratic>(int, int);
-template double assembly_bytes<double, Gimp>(int, int);
-template bool assembly_countable<double, Quadratic>(int, int);
-template bool assembly_countable<double, Gimp>(int, int);
 
 #define TALUS_INSTANTIATE(Real, Device, Shape) template class CsrAssembly<Real, Device, Shape>;
 TALUS_FOR_EACH_INSTANCE(TALUS_INSTANTIATE)

@@ -3,9 +3,7 @@
 // y = K x point by point from the stored tangents.
 #pragma once
 
-#include "solver/elements/element_list.hpp"
 #include "solver/elements/forces.hpp"
-#include "solver/parallel/vectors.hpp"
 
 namespace talus::solver {
 

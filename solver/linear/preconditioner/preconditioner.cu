@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "solver/grid/instances.hpp"
-#include "solver/transfer/point_gradients.hpp"
+#include "solver/transfer/stencil.hpp"
 
 namespace talus::solver {
 namespace {
@@ -126,8 +126,7 @@ void NodePreconditioner<Real, Device, Shape>::refresh(const PointTangents<Real>&
                                                       const ElementList<Real, Device, Shape>& list,
                                                       const HeldNodes& held) {
   held_ = held;
-  blocks_.resize(static_cast<std::size_t>(held.count));
-  blocks_.fill_zero();
+  blocks_.resize_zeroed(static_cast<std::size_t>(held.count));
   using Blocks = ScatterBlocks<Real, Shape, std::conditional_t<Device::is_gpu, PointTangent<Real>, WholeTangent<Real>>>;
   scatter_points(device_, from.points.count, groups, Blocks{{from.grid, from.points}, from.tangents, blocks_.data()});
   if (from.means.on()) add_mean_blocks(list, from.means, blocks_);

@@ -3,14 +3,24 @@
 // z = B^-1 r for conjugate gradients: B is the 3 x 3 block of each node (block Jacobi).
 #pragma once
 
-#include "solver/elements/element_list.hpp"
-#include "solver/elements/held_nodes.hpp"
 #include "solver/elements/point_tangents.hpp"
-#include "solver/linear/krylov/cg_kernels.hpp"
-#include "solver/linear/preconditioner/node_blocks.hpp"
-#include "solver/parallel/vectors.hpp"
+#include "solver/linear/krylov/conjugate_gradient.hpp"
 
 namespace talus::solver {
+
+/// Whether a block is positive definite with a margin of 1e-12 against rounding.
+TALUS_HD bool is_definite(const Sym3<double>& s) {
+  constexpr double margin = 1e-12;
+  const double minor = s.xx * s.yy - s.xy * s.xy;
+  const double whole = s.zz * minor - s.xx * s.yz * s.yz - s.yy * s.xz * s.xz + 2 * s.xy * s.yz * s.xz;
+  return s.xx > 0 && minor > margin * s.xx * s.yy && whole > margin * s.xx * s.yy * s.zz;
+}
+
+/// The absolute values of a block's diagonal, in place of a block that cannot be inverted.
+TALUS_HD Sym3<double> diagonal_of(const Sym3<double>& s) {
+  const auto safe = [](double d) { return fabs(d) > 0 ? fabs(d) : 1.0; };
+  return {safe(s.xx), safe(s.yy), safe(s.zz), 0, 0, 0};
+}
 
 /// The block Jacobi preconditioner (see LinearPreconditioner in conjugate_gradient.hpp).
 template <class Real, class Device, class Shape>
@@ -27,7 +37,6 @@ class NodePreconditioner {
   /// The method does the same after a step, in one sweep, and hands over r . r too.
   void apply_after(const talus::detail::StepAlong& step, const NodeVector<Device>& r, NodeVector<Device>& z,
                    CgState* state);
-  /// The size of the blocks [bytes].
   std::size_t bytes() const { return blocks_.bytes(); }
 
  private:

@@ -108,7 +108,6 @@ class DilatantReturn {
                           const DilatantTrial<Real>& trial)
       : stiff_(m.shear_modulus), bulk_(m.bulk_modulus), numbers_(numbers), trial_(trial) {}
 
-  /// The trial.
   TALUS_HD const DilatantTrial<Real>& trial() const { return trial_; }
   /// tan(psi) at the start of slow flow.
   TALUS_HD Real angle_at_rest() const { return numbers_.rate * (trial_.fraction - numbers_.at_rest); }

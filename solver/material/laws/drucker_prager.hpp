@@ -10,8 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "solver/material/law_list.hpp"
-#include "solver/material/laws/hencky.hpp"
+#include "solver/material/laws/elastic.hpp"
 
 namespace talus {
 
@@ -112,8 +111,7 @@ struct CutPressure {
 };
 
 /// The end of a trial on the cone (de Souza Neto et al. 2008, box 8.8, non-associated): shear - G g = alpha p(g) + k
-/// with dilatancy raising the pressure by K beta g (T15). The pressure is convex in g, so Newton's steps come from one
-/// side.
+/// with dilatancy raising the pressure by K beta g (T15). As p is convex in g, Newton's steps come from one side.
 template <class Real>
 struct ConeReturn {
   Real left;                         ///< sqrt(J2) [Pa]
@@ -163,7 +161,6 @@ struct DruckerPrager {
   /// Gravity is loaded elastically: what is about to slide has no equilibrium of its own.
   using LoadedAs = Hencky;
 
-  /// The keys of the law.
   struct Options {
     double friction_angle = 30;          ///< [deg]
     double cohesion = 0;                 ///< [Pa]
@@ -187,7 +184,6 @@ struct DruckerPrager {
     }
     /// The friction coefficient inside [-].
     double internal_friction() const { return std::tan(friction_angle * std::numbers::pi / 180); }
-    /// The cone that the keys ask for.
     std::vector<AskedCone> cones() const {
       return {{"friction_angle_deg", friction_angle, asked_cone(friction_angle, cohesion).slope}};
     }
@@ -203,26 +199,84 @@ struct DruckerPrager {
       cohesion /= factor;
       dilatancy_angle = std::min(dilatancy_angle, friction_angle);
     }
-    /// Whether strength falls as the material shears.
     bool softens() const { return softening_slip > 0; }
-    /// Whether shear changes the volume of the material.
     bool dilates() const { return dilatancy_angle > 0; }
-    /// The method declares the keys with defaults, help and what they need of one another.
-    void describe(recipe::Visitor& v, const LawTable& table);
+    void describe(recipe::Visitor& v, const LawTable& table) {
+      using recipe::Range;
+      v.number("friction_angle_deg", friction_angle, Range{0, 90, false, true}, "internal friction angle");
+      v.number("cohesion_Pa", cohesion, recipe::not_negative, "cohesion");
+      v.number("dilatancy_angle_deg", dilatancy_angle, Range{0, 90, false, true}, "dilatancy angle");
+      v.needs(!(dilatancy_angle > friction_angle),
+              {table.name + " dilatancy_angle_deg = " + shortest(dilatancy_angle) +
+                   " is above friction_angle_deg = " + shortest(friction_angle),
+               "the material would make energy as it shears", "Lower dilatancy_angle_deg; 0 is usual for run-out"});
+      v.number("tension_cutoff_Pa", tension_cutoff, recipe::not_negative, "largest mean tension carried");
+      v.number("pore_pressure_ratio", pore_pressure_ratio, Range{0, 1},
+               "share of the pressure that water carries (saturated ground); friction acts on the rest");
+      v.number("softening_slip_m", softening_slip, recipe::not_negative,
+               "slip over which friction and cohesion fall to the residual ones; 0: they do not");
+      v.number("residual_friction_angle_deg", residual_friction_angle, Range{0, 90, false, true},
+               "after softening: internal friction angle");
+      v.number("residual_cohesion_Pa", residual_cohesion, recipe::not_negative, "after softening: cohesion");
+      v.needs(
+          !softens() || !(residual_friction_angle > friction_angle || residual_cohesion > cohesion),
+          {table.name + " softens to " + shortest(residual_friction_angle) + " deg and " + shortest(residual_cohesion) +
+               " Pa, from " + shortest(friction_angle) + " deg and " + shortest(cohesion) + " Pa",
+           "a residual strength is no larger than the first",
+           "Lower residual_friction_angle_deg or residual_cohesion_Pa"});
+      recipe::choice(v, "cone", cone,
+                     {{"simple-shear", Cone::simple_shear},
+                      {"compression", Cone::compression},
+                      {"extension", Cone::extension},
+                      {"plane-strain", Cone::plane_strain}},
+                     "test that the friction angle is from: shear box or angle of repose, triaxial compression or "
+                     "extension, biaxial");
+    }
   };
-  /// The law in a line, for plan and log; `elasticity` states density and moduli.
-  static std::string words(const Options& o, const std::string& elasticity);
-  /// The law in a sentence of the report, "It is ...".
-  static std::string sentence(const Options& o);
+  static std::string words(const Options& o, const std::string& elasticity) {
+    std::string text = "drucker-prager, " + elasticity + ", friction " + six_digits(o.friction_angle) + " deg";
+    if (o.cohesion > 0) text += ", cohesion " + six_digits(o.cohesion) + " Pa";
+    if (o.dilatancy_angle > 0) text += ", dilatancy " + six_digits(o.dilatancy_angle) + " deg";
+    if (o.tension_cutoff > 0) text += ", tension up to " + six_digits(o.tension_cutoff) + " Pa";
+    if (o.pore_pressure_ratio > 0) text += ", water carries " + six_digits(o.pore_pressure_ratio) + " of the pressure";
+    if (o.softens()) {
+      text += ", softens over " + six_digits(o.softening_slip) + " m to " + six_digits(o.residual_friction_angle) +
+              " deg and " + six_digits(o.residual_cohesion) + " Pa";
+    }
+    return text;
+  }
+  static std::string sentence(const Options& o) {
+    std::string text = "an elasto-plastic (Drucker-Prager) material with an internal friction angle of " +
+                       six_digits(o.friction_angle) + "\u00b0";
+    if (o.cohesion > 0) text += " and a cohesion of " + six_digits(o.cohesion / 1000) + " kPa";
+    return text;
+  }
 
-  /// The numbers of the law: those of its cone.
   template <class Real>
   struct Numbers : ConeNumbers<Real> {};
   /// The cone of the options. Softening goes by slip: a band of shear is one cell wide, so that the strain over which
   /// strength falls is the slip over the least side of a cell, `side` [m] (Pietruszczak & Mroz 1981), and results do
   /// not depend on the grid (T15c).
   template <class Real>
-  static Numbers<Real> numbers(const Options& o, double side);
+  static Numbers<Real> numbers(const Options& o, double side) {
+    const ConeFit cone = o.cone_of(o.friction_angle, o.cohesion);
+    const ConeFit flow = o.asked_cone(o.dilatancy_angle, 0);
+    // The cone's own tip bounds the tension; a frictionless cone has none.
+    const double tip = cone.slope > 0 ? cone.cohesion / cone.slope : o.tension_cutoff;
+    const double borne = 1 - o.pore_pressure_ratio;  // by the grains
+    Numbers<Real> n;
+    n.friction = static_cast<Real>(borne * cone.slope);
+    n.dilatancy = static_cast<Real>(flow.slope);
+    n.shear_cohesion = static_cast<Real>(cone.cohesion);
+    n.tension = static_cast<Real>(std::min(tip, o.tension_cutoff));
+    if (o.softens()) {
+      const ConeFit left = o.cone_of(o.residual_friction_angle, o.residual_cohesion);
+      n.residual_friction = static_cast<Real>(borne * left.slope);
+      n.residual_cohesion = static_cast<Real>(left.cohesion);
+      n.softening = static_cast<Real>(side / o.softening_slip);
+    }
+    return n;
+  }
 
   /// The pressure, tension cut off (T15) [Pa].
   template <class Real>
@@ -286,7 +340,6 @@ struct DruckerPrager {
   }
 };
 
-/// The definition of the response to a trial, of (T17).
 template <class Real>
 TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Real>& cone,
                                      const PrincipalTrial<Real>& trial, PrincipalResponse<Real>& out) {
@@ -317,82 +370,6 @@ TALUS_HD void DruckerPrager::respond(const Elasticity<Real>& m, const Numbers<Re
           twice * (ratio * ((a == b ? Real(1) : Real(0)) - Real(1.0 / 3)) + (slope - ratio) * along);
     }
   }
-}
-
-/// The definition of the cone's numbers, by (T15a) and (T15c).
-template <class Real>
-DruckerPrager::Numbers<Real> DruckerPrager::numbers(const Options& o, double side) {
-  const ConeFit cone = o.cone_of(o.friction_angle, o.cohesion);
-  const ConeFit flow = o.asked_cone(o.dilatancy_angle, 0);
-  // The cone's own tip bounds the tension; a frictionless cone has none.
-  const double tip = cone.slope > 0 ? cone.cohesion / cone.slope : o.tension_cutoff;
-  const double borne = 1 - o.pore_pressure_ratio;  // by the grains
-  Numbers<Real> n;
-  n.friction = static_cast<Real>(borne * cone.slope);
-  n.dilatancy = static_cast<Real>(flow.slope);
-  n.shear_cohesion = static_cast<Real>(cone.cohesion);
-  n.tension = static_cast<Real>(std::min(tip, o.tension_cutoff));
-  if (o.softens()) {
-    const ConeFit left = o.cone_of(o.residual_friction_angle, o.residual_cohesion);
-    n.residual_friction = static_cast<Real>(borne * left.slope);
-    n.residual_cohesion = static_cast<Real>(left.cohesion);
-    n.softening = static_cast<Real>(side / o.softening_slip);
-  }
-  return n;
-}
-
-/// The definition of the keys, with defaults, help and what they need of one another, whichever law is chosen.
-inline void DruckerPrager::Options::describe(recipe::Visitor& v, const LawTable& table) {
-  using recipe::Range;
-  v.number("friction_angle_deg", friction_angle, Range{0, 90, false, true}, "internal friction angle");
-  v.number("cohesion_Pa", cohesion, recipe::not_negative, "cohesion");
-  v.number("dilatancy_angle_deg", dilatancy_angle, Range{0, 90, false, true}, "dilatancy angle");
-  v.needs(!(dilatancy_angle > friction_angle),
-          {table.name + " dilatancy_angle_deg = " + shortest(dilatancy_angle) +
-               " is above friction_angle_deg = " + shortest(friction_angle),
-           "the material would make energy as it shears", "Lower dilatancy_angle_deg; 0 is usual for run-out"});
-  v.number("tension_cutoff_Pa", tension_cutoff, recipe::not_negative, "largest mean tension carried");
-  v.number("pore_pressure_ratio", pore_pressure_ratio, Range{0, 1},
-           "share of the pressure that water carries (saturated ground); friction acts on the rest");
-  v.number("softening_slip_m", softening_slip, recipe::not_negative,
-           "slip over which friction and cohesion fall to the residual ones; 0: they do not");
-  v.number("residual_friction_angle_deg", residual_friction_angle, Range{0, 90, false, true},
-           "after softening: internal friction angle");
-  v.number("residual_cohesion_Pa", residual_cohesion, recipe::not_negative, "after softening: cohesion");
-  v.needs(
-      !softens() || !(residual_friction_angle > friction_angle || residual_cohesion > cohesion),
-      {table.name + " softens to " + shortest(residual_friction_angle) + " deg and " + shortest(residual_cohesion) +
-           " Pa, from " + shortest(friction_angle) + " deg and " + shortest(cohesion) + " Pa",
-       "a residual strength is no larger than the first", "Lower residual_friction_angle_deg or residual_cohesion_Pa"});
-  recipe::choice(
-      v, "cone", cone,
-      {{"simple-shear", Cone::simple_shear},
-       {"compression", Cone::compression},
-       {"extension", Cone::extension},
-       {"plane-strain", Cone::plane_strain}},
-      "test that the friction angle is from: shear box or angle of repose, triaxial compression or extension, biaxial");
-}
-
-/// The definition of the sentence for the report.
-inline std::string DruckerPrager::sentence(const Options& o) {
-  std::string text = "an elasto-plastic (Drucker-Prager) material with an internal friction angle of " +
-                     six_digits(o.friction_angle) + "\u00b0";
-  if (o.cohesion > 0) text += " and a cohesion of " + six_digits(o.cohesion / 1000) + " kPa";
-  return text;
-}
-
-/// The definition of the line for plan and log.
-inline std::string DruckerPrager::words(const Options& o, const std::string& elasticity) {
-  std::string text = "drucker-prager, " + elasticity + ", friction " + six_digits(o.friction_angle) + " deg";
-  if (o.cohesion > 0) text += ", cohesion " + six_digits(o.cohesion) + " Pa";
-  if (o.dilatancy_angle > 0) text += ", dilatancy " + six_digits(o.dilatancy_angle) + " deg";
-  if (o.tension_cutoff > 0) text += ", tension up to " + six_digits(o.tension_cutoff) + " Pa";
-  if (o.pore_pressure_ratio > 0) text += ", water carries " + six_digits(o.pore_pressure_ratio) + " of the pressure";
-  if (o.softens()) {
-    text += ", softens over " + six_digits(o.softening_slip) + " m to " + six_digits(o.residual_friction_angle) +
-            " deg and " + six_digits(o.residual_cohesion) + " Pa";
-  }
-  return text;
 }
 
 }  // namespace talus

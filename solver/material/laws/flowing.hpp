@@ -11,8 +11,7 @@
 // strength at rest and S: steps are stable as those of elasticity are.
 #pragma once
 
-#include "solver/material/law_list.hpp"
-#include "solver/material/laws/hencky.hpp"
+#include "solver/material/laws/elastic.hpp"
 
 namespace talus {
 

@@ -19,7 +19,6 @@ namespace talus {
 struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
   static constexpr std::string_view name = "herschel-bulkley";
 
-  /// The keys of the law.
   struct Options {
     double yield_stress = 100;  ///< tau_y [Pa]
     double consistency = 50;    ///< k [Pa s^n]
@@ -27,7 +26,6 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
 
     bool softens() const { return false; }  ///< strength does not fall as the material shears
     bool dilates() const { return false; }  ///< shear does not change the volume
-    /// The method declares the keys with defaults and help.
     void describe(recipe::Visitor& v, const LawTable&) {
       v.number("yield_stress_Pa", yield_stress, recipe::not_negative,
                "herschel-bulkley: shear stress below which it rests");
@@ -37,12 +35,10 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
                "herschel-bulkley: exponent of the rate; 1 is Bingham's law, less is shear-thinning");
     }
   };
-  /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options& o, const std::string& elasticity) {
     return "herschel-bulkley, " + elasticity + ", yield stress " + six_digits(o.yield_stress) + " Pa, consistency " +
            six_digits(o.consistency) + " Pa s^" + six_digits(o.flow_exponent);
   }
-  /// The law in a sentence of the report, "It is ...".
   static std::string sentence(const Options& o) {
     const std::string stress = "a yield stress of " + six_digits(o.yield_stress) + " Pa and a ";
     return o.flow_exponent == 1
@@ -51,14 +47,12 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
                      six_digits(o.flow_exponent);
   }
 
-  /// The numbers of the law as kernels see them.
   template <class Real>
   struct Numbers : FlowNumbers {
     Real rest = 0;         ///< tau_y [Pa]
     Real consistency = 0;  ///< k [Pa s^n]
     Real exponent = 1;     ///< n [-]
   };
-  /// The numbers of the options.
   template <class Real>
   static Numbers<Real> numbers(const Options& o, double) {
     Numbers<Real> n;

@@ -14,8 +14,6 @@
 #include <numbers>
 
 #include "solver/material/laws/dilatancy.hpp"
-#include "solver/material/laws/drucker_prager.hpp"
-#include "solver/material/laws/flowing.hpp"
 
 namespace talus {
 
@@ -69,21 +67,81 @@ struct MuOfI : FlowingLaw<MuOfI> {
     /// The share of the pressure that the material holds in slow simple shear [-].
     double held_share(double) const { return std::min(internal_friction(), steepest_cone); }
     /// What is wrong with the density of the mass [kg/m3] beside that of its grains; empty: nothing.
-    std::string density_fault(double density) const;
-    /// The inertial number from which the equations of the incompressible law are well posed (Barker et al. 2015); 0
-    /// where they are nowhere, as the friction rises too little.
-    double first_well_posed() const;
+    std::string density_fault(double density) const {
+      if (dilates()) {
+        constexpr double water = 1000, close = 0.02;
+        const double dry = volume_fraction * grain_density, full = dry + (1 - volume_fraction) * water;
+        if (density >= (1 - close) * dry && density <= (1 + close) * full) return {};
+        return "does not go with grain_density_kg_m3 = " + six_digits(grain_density) +
+               " and volume_fraction = " + six_digits(volume_fraction) + ". Grains so packed have " + six_digits(dry) +
+               ", and " + six_digits(full) + " with water between them";
+      }
+      if (density <= grain_density) return {};
+      return "is that of the mass, pores included, and above grain_density_kg_m3 = " + six_digits(grain_density) +
+             ". Dry grains fill about 0.6 of the space: give " + six_digits(0.6 * grain_density);
+    }
+    /// The inertial number from which the equations of the incompressible law are well posed, (T27a), C = 4 X^2 - 4 X +
+    /// mu^2 (1 - X / 2)^2 <= 0, X = I mu' / mu (Barker et al. 2015); 0 where they are nowhere, as the friction rises
+    /// too little.
+    double first_well_posed() const {
+      const auto ill_posed = [&](double i) {
+        const InertialFriction<double> mu(internal_friction(), limiting_friction(), fast_friction_rise, inertial_number,
+                                          i);
+        const double x = i * mu.slope / mu.value, left = mu.value * (1 - x / 2);
+        return 4 * x * x - 4 * x + left * left > 0;
+      };
+      constexpr double ratio = 1.1;
+      double high = 1e-9 * inertial_number;
+      while (ill_posed(high) && high < inertial_number) high *= ratio;
+      if (ill_posed(high)) return 0;
+      double low = high / ratio;
+      for (int n = 0; n < 50; ++n) {
+        const double middle = 0.5 * (low + high);
+        (ill_posed(middle) ? low : high) = middle;
+      }
+      return high;
+    }
     bool softens() const { return false; }  ///< strength does not fall as the material shears
-    /// Whether shear changes the volume of the material.
     bool dilates() const { return volume_fraction > 0; }
     /// What the volume fraction at the start adds to the friction of slow flow, tan(psi) [-].
     double first_dilatancy() const {
       return dilates() ? dilatancy_rate * (volume_fraction - volume_fraction_at_rest) : 0;
     }
-    /// The method declares the keys with defaults, help and what they need of one another.
-    void describe(recipe::Visitor& v, const LawTable& table);
+    void describe(recipe::Visitor& v, const LawTable& table) {
+      using recipe::Range;
+      v.number("static_friction_angle_deg", static_friction_angle, Range{0, 90, true, true},
+               "mu-of-i: friction angle of slow flow, tan = mu_s");
+      v.number("limiting_friction_angle_deg", limiting_friction_angle, Range{0, 90, true, true},
+               "mu-of-i: friction angle that fast flow tends to, tan = mu_2");
+      v.needs(limiting_friction_angle > static_friction_angle,
+              {table.name + " limiting_friction_angle_deg = " + shortest(limiting_friction_angle) +
+                   " is not above static_friction_angle_deg = " + shortest(static_friction_angle),
+               "friction grows with the rate of shear", "Swap the two, or take model = \"drucker-prager\""});
+      v.number("inertial_number", inertial_number, recipe::positive,
+               "mu-of-i: I_0, the inertial number at half the rise");
+      v.number("grain_diameter_m", grain_diameter, recipe::positive, "mu-of-i: diameter of the grains");
+      v.number("grain_density_kg_m3", grain_density, recipe::positive, "mu-of-i: density of the grains themselves");
+      recipe::choice(v, "slow_flow", slow_flow, {{"yield", SlowFlow::yield}, {"creep", SlowFlow::creep}},
+                     "mu-of-i: below the static angle the mass rests, or creeps (well posed without elasticity too)");
+      v.needs(slow_flow == SlowFlow::yield || first_well_posed() > 0,
+              {table.name + " slow_flow = \"creep\" does not go with friction angles of " +
+                   shortest(static_friction_angle) + " to " + shortest(limiting_friction_angle) + " deg",
+               "friction that rises so little is well posed at no rate, and creep has nowhere to begin",
+               "Raise limiting_friction_angle_deg, or take slow_flow = \"yield\""});
+      v.number("volume_fraction", volume_fraction, Range{0, 0.75},
+               "mu-of-i: share of the space that the grains fill at the start; 0: shear does not change the volume");
+      v.number("volume_fraction_at_rest", volume_fraction_at_rest, Range{0.3, 0.75},
+               "mu-of-i: volume fraction that slow shear leads to; denser grains dilate, looser ones contract");
+      v.number("dilatancy_rate", dilatancy_rate, Range{0, 100, true, false},
+               "mu-of-i: K_3, tangent of the dilatancy angle over the excess of the volume fraction");
+      v.needs(
+          internal_friction() + first_dilatancy() > 0,
+          {table.name + " volume_fraction = " + shortest(volume_fraction) +
+               " leaves the grains no friction at the start",
+           "tan of static_friction_angle_deg and dilatancy_rate times what volume_fraction_at_rest is above it cancel",
+           "Raise volume_fraction, or lower dilatancy_rate"});
+    }
   };
-  /// The law in a line, for plan and log; `elasticity` states density and moduli.
   static std::string words(const Options& o, const std::string& elasticity) {
     return "mu(I) flow, " + elasticity + ", friction " + six_digits(o.static_friction_angle) + " to " +
            six_digits(o.limiting_friction_angle) + " deg, grains of " + six_digits(o.grain_diameter) + " m" +
@@ -92,7 +150,6 @@ struct MuOfI : FlowingLaw<MuOfI> {
                               six_digits(o.volume_fraction_at_rest) + " in slow shear"
                         : "");
   }
-  /// The law in a sentence of the report, "It is ...".
   static std::string sentence(const Options& o) {
     return "a granular material (mu(I) rheology) whose friction angle grows with the rate of shear from " +
            six_digits(o.static_friction_angle) + "\u00b0 to " + six_digits(o.limiting_friction_angle) +
@@ -102,7 +159,6 @@ struct MuOfI : FlowingLaw<MuOfI> {
                         : "");
   }
 
-  /// The numbers of the law as kernels see them.
   template <class Real>
   struct Numbers : FlowNumbers {
     Real slow = 0, fast = 0, rise = 0;  ///< mu_s, mu_2, mu_inf [-]
@@ -112,7 +168,6 @@ struct MuOfI : FlowingLaw<MuOfI> {
     Real creep_scale = 0;               ///< A of the creep [-]
     DilatancyNumbers<Real> volume;      ///< what shear does to it
   };
-  /// The numbers of the options.
   template <class Real>
   static Numbers<Real> numbers(const Options& o, double) {
     Numbers<Real> n;
@@ -250,73 +305,5 @@ struct MuOfI : FlowingLaw<MuOfI> {
     return {mu * p, by_shear, (mu - mu * mu * mu / (Real(4) * alpha)) * (Real(1) - by_shear)};
   }
 };
-
-/// The definition of the first inertial number where (T27a), C = 4 X^2 - 4 X + mu^2 (1 - X / 2)^2 <= 0, X = I mu' / mu
-/// (Barker et al. 2015).
-inline std::string MuOfI::Options::density_fault(double density) const {
-  if (dilates()) {
-    constexpr double water = 1000, close = 0.02;
-    const double dry = volume_fraction * grain_density, full = dry + (1 - volume_fraction) * water;
-    if (density >= (1 - close) * dry && density <= (1 + close) * full) return {};
-    return "does not go with grain_density_kg_m3 = " + six_digits(grain_density) +
-           " and volume_fraction = " + six_digits(volume_fraction) + ". Grains so packed have " + six_digits(dry) +
-           ", and " + six_digits(full) + " with water between them";
-  }
-  if (density <= grain_density) return {};
-  return "is that of the mass, pores included, and above grain_density_kg_m3 = " + six_digits(grain_density) +
-         ". Dry grains fill about 0.6 of the space: give " + six_digits(0.6 * grain_density);
-}
-
-inline double MuOfI::Options::first_well_posed() const {
-  const auto ill_posed = [&](double i) {
-    const InertialFriction<double> mu(internal_friction(), limiting_friction(), fast_friction_rise, inertial_number, i);
-    const double x = i * mu.slope / mu.value, left = mu.value * (1 - x / 2);
-    return 4 * x * x - 4 * x + left * left > 0;
-  };
-  constexpr double ratio = 1.1;
-  double high = 1e-9 * inertial_number;
-  while (ill_posed(high) && high < inertial_number) high *= ratio;
-  if (ill_posed(high)) return 0;
-  double low = high / ratio;
-  for (int n = 0; n < 50; ++n) {
-    const double middle = 0.5 * (low + high);
-    (ill_posed(middle) ? low : high) = middle;
-  }
-  return high;
-}
-
-/// The definition of the keys, with defaults, help and what they need of one another, whichever law is chosen.
-inline void MuOfI::Options::describe(recipe::Visitor& v, const LawTable& table) {
-  using recipe::Range;
-  v.number("static_friction_angle_deg", static_friction_angle, Range{0, 90, true, true},
-           "mu-of-i: friction angle of slow flow, tan = mu_s");
-  v.number("limiting_friction_angle_deg", limiting_friction_angle, Range{0, 90, true, true},
-           "mu-of-i: friction angle that fast flow tends to, tan = mu_2");
-  v.needs(limiting_friction_angle > static_friction_angle,
-          {table.name + " limiting_friction_angle_deg = " + shortest(limiting_friction_angle) +
-               " is not above static_friction_angle_deg = " + shortest(static_friction_angle),
-           "friction grows with the rate of shear", "Swap the two, or take model = \"drucker-prager\""});
-  v.number("inertial_number", inertial_number, recipe::positive, "mu-of-i: I_0, the inertial number at half the rise");
-  v.number("grain_diameter_m", grain_diameter, recipe::positive, "mu-of-i: diameter of the grains");
-  v.number("grain_density_kg_m3", grain_density, recipe::positive, "mu-of-i: density of the grains themselves");
-  recipe::choice(v, "slow_flow", slow_flow, {{"yield", SlowFlow::yield}, {"creep", SlowFlow::creep}},
-                 "mu-of-i: below the static angle the mass rests, or creeps (well posed without elasticity too)");
-  v.needs(slow_flow == SlowFlow::yield || first_well_posed() > 0,
-          {table.name + " slow_flow = \"creep\" does not go with friction angles of " +
-               shortest(static_friction_angle) + " to " + shortest(limiting_friction_angle) + " deg",
-           "friction that rises so little is well posed at no rate, and creep has nowhere to begin",
-           "Raise limiting_friction_angle_deg, or take slow_flow = \"yield\""});
-  v.number("volume_fraction", volume_fraction, Range{0, 0.75},
-           "mu-of-i: share of the space that the grains fill at the start; 0: shear does not change the volume");
-  v.number("volume_fraction_at_rest", volume_fraction_at_rest, Range{0.3, 0.75},
-           "mu-of-i: volume fraction that slow shear leads to; denser grains dilate, looser ones contract");
-  v.number("dilatancy_rate", dilatancy_rate, Range{0, 100, true, false},
-           "mu-of-i: K_3, tangent of the dilatancy angle over the excess of the volume fraction");
-  v.needs(
-      internal_friction() + first_dilatancy() > 0,
-      {table.name + " volume_fraction = " + shortest(volume_fraction) + " leaves the grains no friction at the start",
-       "tan of static_friction_angle_deg and dilatancy_rate times what volume_fraction_at_rest is above it cancel",
-       "Raise volume_fraction, or lower dilatancy_rate"});
-}
 
 }  // namespace talus

@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstdlib>
+#include <iterator>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "common/run/check_values.hpp"
 #include "common/run/hdf5.hpp"
-#include "common/run/history_group.hpp"
 #include "common/run/sealed_file.hpp"
-#include "common/stage/checksum.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus::solver {
@@ -22,11 +23,10 @@ namespace {
 
 constexpr h5::Format checkpoint_format{"talus-checkpoint", "a checkpoint of this program"};
 constexpr const char* points_group = "/points";
-constexpr const char* homes = "/points/home";  // only there where steps were taken since points were sorted
+constexpr const char* home_path = "/points/home";  // only there where steps were taken since points were sorted
 constexpr const char* mend = "Run talus-solve again without --restart";
 
-/// Calls item(field, name, list) for every list of the points that a checkpoint keeps, so that writing, reading and
-/// checking cannot differ.
+/// Calls item(field, name, list) for every list of the points in a checkpoint, to write, to read and to check.
 template <class State, class Item>
 void visit_points(State& s, Item&& item) {
   const auto visit_one = [&](const ParticleField& field, int component, auto& list) {
@@ -126,7 +126,7 @@ void write_points(h5::File& file, const SolverState& state) {
   visit_points(state.points, [&](const ParticleField& field, const std::string& name, const auto& list) {
     if (!is_optional(field) || tells(list, field.initial)) items(name, list);
   });
-  if (!state.homes.empty()) file.write<std::int64_t>(homes, dims_of(state.homes.size()), state.homes);
+  if (!state.homes.empty()) file.write<std::int64_t>(home_path, dims_of(state.homes.size()), state.homes);
 }
 
 void read_points(const h5::File& file, SolverState& state) {
@@ -140,7 +140,7 @@ void read_points(const h5::File& file, SolverState& state) {
   visit_points(state.points, [&](const ParticleField& field, const std::string&, auto& list) {
     if (is_optional(field) && list.empty()) list.assign(state.points.size(), field.initial);
   });
-  if (file.exists(homes)) state.homes = file.read_list<std::int64_t>(homes);
+  if (file.exists(home_path)) state.homes = file.read_list<std::int64_t>(home_path);
 }
 
 /// Lists that must be of one length: those of the points, those of the map, those of the contact points.
@@ -177,22 +177,96 @@ void check_lengths(const h5::File& file, const Checkpoint& c) {
                 "three belong together");
 }
 
+/// Refuses one file, and looks at its lists.
+class Fits {
+ public:
+  explicit Fits(const std::filesystem::path& file) : file_(file) {}
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    refuse_file(file_, "the checkpoint does not fit the scene", why, "Run talus-solve again without --restart");
+  }
+  void length(const char* name, std::size_t found, std::size_t expected) const {
+    if (found != expected) refuse(fmt::format("{} has {} values, the scene asks for {}", name, found, expected));
+  }
+  template <class T, class Low, class High>
+  void within(const char* name, const std::vector<T>& values, Low low, High high) const {
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      if (values[p] >= low && values[p] <= high) continue;
+      refuse(fmt::format("{} of point {} is {}; {} to {} is possible", name, p, values[p], low, high));
+    }
+  }
+  void all_different(const char* name, const std::vector<int>& values, std::size_t count) const {
+    std::vector<bool> taken(count);
+    for (const int value : values) {
+      const auto place = static_cast<std::size_t>(value);
+      if (taken[place]) refuse(fmt::format("two points have the {} {}", name, value));
+      taken[place] = true;
+    }
+  }
+
+ private:
+  const std::filesystem::path& file_;
+};
+
+double largest(const std::vector<int>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+/// Homes are in the order of the sort, and no point has gone further from its own than a step may begin with.
+void check_homes(const Fits& fits, const SolverState& state, const Scene& scene) {
+  const std::vector<std::int64_t>& homes = state.homes;
+  const int across = blocks_across(scene.grid.columns);
+  const std::int64_t blocks = std::int64_t{across} * blocks_across(scene.grid.rows);
+  fits.within("home", homes, 0, (blocks << key_block_shift) - 1);
+  if (!std::is_sorted(homes.begin(), homes.end())) fits.refuse("its points are not in the order of their homes");
+  const ParticleState& points = state.points;
+  for (std::size_t p = 0; p < homes.size(); ++p) {
+    const HomeCell home(across, static_cast<std::uint64_t>(homes[p]));
+    const int cell[3] = {points.cell[0][p], points.cell[1][p], points.cell[2][p]};
+    const bool here = cell[0] < 0 || (std::abs(cell[0] - home.i) <= 1 && std::abs(cell[1] - home.j) <= 1 &&
+                                      std::abs(cell[2] - home.k) <= 1);
+    if (home.i >= scene.grid.columns || home.j >= scene.grid.rows || !here)
+      fits.refuse(fmt::format("home of point {} is cell {}, {}, {}; the point is in {}, {}, {}", p, home.i, home.j,
+                              home.k, cell[0], cell[1], cell[2]));
+  }
+}
+
+void check_points(const Fits& fits, const SolverState& state, std::int64_t pulses, const Scene& scene) {
+  const ParticleState& points = state.points;
+  constexpr double most_layers = 1 << 20, tiny = std::numeric_limits<double>::min();
+  const std::size_t seeded = scene.points.size() + scene.inflow.points_in(pulses);
+  if (points.size() > seeded)
+    fits.refuse(fmt::format("it holds {} points, of which the scene has {}", points.size(), seeded));
+  fits.within("cell_0", points.cell[0], -1, scene.grid.columns - 1);
+  const auto left = std::count(points.cell[0].begin(), points.cell[0].end(), -1);
+  const int counted = state.homes.empty() ? 0 : state.clock.outflow.count;  // a sort drops those who have left
+  if (left != counted) fits.refuse(fmt::format("{} of its points are outside, and its clock counts {}", left, counted));
+  fits.within("cell_1", points.cell[1], 0, scene.grid.rows - 1);
+  fits.within("cell_2", points.cell[2], 0, most_layers);
+  for (const auto& offset : points.offset) fits.within("offset", offset, -0.5001, 0.5001);  // single precision rounds
+  fits.within("volume", points.volume, tiny, 1e30);
+  fits.within("id", points.id, 0, static_cast<double>(seeded) - 1);
+  fits.all_different("id", points.id, seeded);
+  fits.within("release", points.release, 0, static_cast<double>(scene.release_names.size()) - 1);
+  fits.within("load", points.load, -1, static_cast<double>(scene.load_volumes.size()) - 1);
+  fits.within("material", points.material, 0,
+              std::max(largest(scene.points.material), largest(scene.inflow.points.material)));
+}
+
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  PendingFile pending(path);
-  h5::File file = h5::File::create(pending.path(), {path, "Free some space, or name another folder with --out DIR"});
-  file.leave_plain();  // a signal waits for it
-  h5::set_format(file, checkpoint_format);
-  file.set_text("/", "fingerprint", checkpoint.fingerprint);
-  file.set_text("/", "id", checkpoint.id);
-  file.set_text("/", "stop_reason", checkpoint.stop_reason);
-  write_points(file, checkpoint.state);
-  visit(checkpoint, [&](const char* group) { return ItemWriter(file, group); });
-  write_history(file, checkpoint.memory.history);
-  file.close();
-  seal_file(pending.path(), path);
-  pending.commit();
+  const auto write = [&](h5::File& file) {
+    file.leave_plain();  // a signal waits for it
+    h5::set_format(file, checkpoint_format);
+    file.set_text("/", "fingerprint", checkpoint.fingerprint);
+    file.set_text("/", "id", checkpoint.id);
+    file.set_text("/", "stop_reason", checkpoint.stop_reason);
+    write_points(file, checkpoint.state);
+    visit(checkpoint, [&](const char* group) { return ItemWriter(file, group); });
+    write_history(file, checkpoint.memory.history);
+  };
+  h5::write_sealed(path, write, "Free some space, or name another folder with --out DIR");
 }
 
 std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& path) {
@@ -221,6 +295,33 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
   c.memory.history = read_history(file);
   check_lengths(file, c);
   return c;
+}
+
+void check_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Scene& scene) {
+  const Fits fits(file);
+  const std::int64_t pulses = checkpoint.memory.pulses;
+  if (pulses < 0 || pulses > std::ssize(scene.inflow.pulses))
+    fits.refuse(fmt::format("{} pulses of inflows have entered, of which the scene has {}", pulses,
+                            scene.inflow.pulses.size()));
+  check_points(fits, checkpoint.state, pulses, scene);
+  check_homes(fits, checkpoint.state, scene);
+  const std::size_t cells = scene.map.count();
+  for_each_running_map([&](const RunningMap& map, const auto& values) { fits.length(map.name, values.size(), cells); },
+                       checkpoint.state.maps);
+  fits.length("initial_thickness", checkpoint.memory.initial_thickness.size(), cells);
+  const ContactState& contacts = checkpoint.state.contacts;
+  const std::size_t count = contacts.force.empty() ? 0 : 3 * scene.contacts.size();
+  fits.length("force", contacts.force.size(), count);
+  fits.length("impulse", contacts.impulse.size(), count);
+  const Clock& clock = checkpoint.state.clock;
+  const bool counted = clock.step >= 0 && clock.outflow.count >= 0 && clock.sorting.steps_between > 0 &&
+                       clock.alarms.halt >= running && clock.alarms.halt <= failed && clock.alarms.request >= running &&
+                       clock.alarms.request <= failed;
+  if (!(clock.time >= 0) || !(clock.step_size >= 0) || !(clock.control.courant >= 0) || !counted)
+    fits.refuse(fmt::format("its clock stands at {:g} s, step {}, of {:g} s", clock.time, clock.step, clock.step_size));
+  const RunMemory& memory = checkpoint.memory;
+  if (std::min({memory.frames, memory.records, memory.checkpoints, memory.outflow_count}) < 0)
+    fits.refuse("its counts of frames, records, checkpoints or points that left are negative");
 }
 
 }  // namespace talus::solver

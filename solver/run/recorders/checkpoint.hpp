@@ -93,7 +93,6 @@ void visit_memory(AnyMemory& m, Item&& item) {
   item("pulses", m.pulses);
 }
 
-/// The content of checkpoint.h5.
 struct Checkpoint {
   std::string fingerprint;  ///< of domain and settings; a checkpoint of other ones is refused
   std::string id;           ///< of the run, which its frames carry too
@@ -102,8 +101,7 @@ struct Checkpoint {
   RunMemory memory;
 };
 
-/// This function writes a checkpoint to `file`, aside and renamed at the end. It throws DataError (disk full, not
-/// writable).
+/// Writes a checkpoint to `file`, aside and renamed at the end. It throws DataError (disk full, not writable).
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
 
 /// What a look at a checkpoint tells, without reading the state.
@@ -120,5 +118,10 @@ std::optional<CheckpointHead> look_at_checkpoint(const std::filesystem::path& fi
 /// truncated, changed since it was written, of another format number, made from another domain or other settings, or
 /// inconsistent in itself.
 Checkpoint read_checkpoint(const std::filesystem::path& file, const std::string& fingerprint);
+
+/// This function throws DataError that names the first list, and the place in it, that does not fit: another count of
+/// map cells or contact points, points outside the grid or far from their cell, of a release, load or material that the
+/// scene does not have, two points of one id, a clock that ran backwards.
+void check_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Scene& scene);
 
 }  // namespace talus::solver

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "solver/grid/terrain.hpp"
-
 namespace talus::solver {
 namespace {
 
@@ -17,16 +15,6 @@ constexpr Column<GaugeReading> gauge_columns[] = {
     {"speed_m_s", "m s-1", [](const GaugeReading& r) { return r.speed; }, "mean speed over depth"},
     {"surface_m", "m", [](const GaugeReading& r) { return r.surface; }, "elevation of the surface"},
 };
-
-std::vector<Place> places_of(const std::vector<GaugeOptions>& gauges) {
-  std::vector<Place> places;
-  places.reserve(gauges.size());
-  for (const GaugeOptions& g : gauges) places.push_back({"gauge_" + g.name + "_", "gauge " + g.name});
-  return places;
-}
-
-/// The distance from the centre of the map's first cell [cells].
-double in_cells(double coordinate, double edge, double cell) { return (coordinate - edge) / cell - 0.5; }
 
 /// The first of the two cells that a gauge lies between; the last pair where it lies on the last cell.
 int first_of_pair(double position, int count) { return std::min(static_cast<int>(std::floor(position)), count - 2); }
@@ -44,7 +32,8 @@ void check_places(const std::vector<GaugeOptions>& gauges, const Scene& scene) {
   std::vector<Fault> faults;
   const MapGrid& map = scene.map;
   for (const GaugeOptions& g : gauges) {
-    if (has_terrain_around(scene, in_cells(g.x, map.west, map.cell), in_cells(g.y, map.south, map.cell))) continue;
+    const auto [xi, eta] = in_cells(map, g.x, g.y);
+    if (has_terrain_around(scene, xi, eta)) continue;
     faults.push_back({fmt::format("[[solve.gauge]] name = \"{}\": ({}, {}) lies outside the domain", g.name, g.x, g.y),
                       "a gauge reads between four cells with terrain",
                       fmt::format("Choose x from {} to {} and y from {} to {}, where the elevation model has data",
@@ -56,15 +45,14 @@ void check_places(const std::vector<GaugeOptions>& gauges, const Scene& scene) {
 }  // namespace
 
 GaugeRecorder::GaugeRecorder(const SolveOptions& options, const Scene& scene)
-    : TableRecorder(gauge_columns, places_of(options.gauges)),
+    : TableRecorder(gauge_columns, places_of("gauge", options.gauges)),
       columns_(static_cast<std::size_t>(scene.grid.columns)),
       densities_{options.material.density} {
   check_places(options.gauges, scene);
   for (const PartOptions& part : options.parts) densities_.push_back(part.material.density);
   const TerrainTables& terrain = scene.terrain;
   for (const GaugeOptions& g : options.gauges) {
-    const double xi = in_cells(g.x, scene.map.west, scene.map.cell);
-    const double eta = in_cells(g.y, scene.map.south, scene.map.cell);
+    const auto [xi, eta] = in_cells(scene.map, g.x, g.y);
     sites_.push_back(
         {.xi = xi,
          .eta = eta,

@@ -4,11 +4,10 @@
 #pragma once
 
 #include "solver/options/solve.hpp"
-#include "solver/run/recorders/recorder.hpp"
+#include "solver/run/recorders/history.hpp"
 
 namespace talus::solver {
 
-/// The reading of a gauge.
 struct GaugeReading {
   double thickness;  ///< vertical, bilinear between the map's cells; ground that can be eroded counts too [m]
   double speed;      ///< of the mean velocity over depth, by mass, of the points within a cell; 0 where none is [m/s]
@@ -26,7 +25,6 @@ class GaugeRecorder : public TableRecorder<GaugeReading> {
   std::vector<GaugeReading> samples(const Instant& now) const override;
 
  private:
-  /// A gauge on the grid.
   struct Site {
     double xi, eta;   ///< cells from the centre of the map's first one
     double bed;       ///< elevation [m]

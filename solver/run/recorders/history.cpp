@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/run/recorders/history.hpp"
 
+#include <functional>
+
+#include "solver/run/recorders/forces.hpp"
 #include "solver/run/recorders/gauges.hpp"
-#include "solver/run/recorders/ground_force.hpp"
-#include "solver/run/recorders/obstacles.hpp"
 #include "solver/run/recorders/sections.hpp"
 #include "solver/run/recorders/stretch.hpp"
 
@@ -62,16 +63,6 @@ constexpr Column<Instant> shaking_budget_columns[] = {
     {"shaking_work_J", "J", [](const Instant& i) { return i.clock.budget.shaking_work; }},
 };
 
-/// The recorder of the numbers of the whole run.
-class RunRecorder : public TableRecorder<Instant> {
- public:
-  explicit RunRecorder(std::span<const Column<Instant>> table) : TableRecorder(table, {Place{}}) {}
-  bool judges() const override { return true; }
-
- protected:
-  std::vector<Instant> samples(const Instant& now) const override { return {now}; }
-};
-
 /// What the inflows have brought by a record.
 struct InflowReading {
   double volume = 0, energy = 0;  // [m3], [J]
@@ -86,48 +77,47 @@ constexpr Column<InflowReading> inflow_columns[] = {
     {"inflow_momentum_z_kg_m_s", "kg m s-1", [](const InflowReading& r) { return r.momentum.z; }},
 };
 
-/// The recorder of what has entered over time. It keeps a reference to the inflow.
-class InflowRecorder : public TableRecorder<InflowReading> {
- public:
-  explicit InflowRecorder(const Inflow& inflow) : TableRecorder(inflow_columns, {Place{}}), inflow_(inflow) {}
-  bool judges() const override { return true; }
-
- protected:
-  std::vector<InflowReading> samples(const Instant& now) const override {
-    const std::int64_t passed = now.counted.pulses;
-    return {{inflow_.volume(passed), inflow_.energy(passed), inflow_.momentum(passed)}};
-  }
-
- private:
-  const Inflow& inflow_;
-};
-
 constexpr Column<Packing> packing_columns[] = {
     {"packing_p99", "1", [](const Packing& p) { return p.p99; }},
     {"packing_max", "1", [](const Packing& p) { return p.largest; }},
 };
 
-/// The recorder of how densely the points are packed.
-class PackingRecorder : public TableRecorder<Packing> {
+/// A recorder of the whole run, of the numbers that `measure` takes at a record.
+template <class Sample>
+class RunRecorder : public TableRecorder<Sample> {
  public:
-  PackingRecorder() : TableRecorder(packing_columns, {Place{}}) {}
+  using Measure = std::function<Sample(const Instant&)>;
+  RunRecorder(std::span<const Column<Sample>> table, Measure measure)
+      : TableRecorder<Sample>(table, {Place{}}), measure_(std::move(measure)) {}
   bool judges() const override { return true; }
 
  protected:
-  std::vector<Packing> samples(const Instant& now) const override { return {now.solver.packing()}; }
+  std::vector<Sample> samples(const Instant& now) const override { return {measure_(now)}; }
+
+ private:
+  Measure measure_;
 };
 
 /// This function makes every recorder that the recipe asks for, in the order of their columns.
 std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& options, const Scene& scene) {
   std::vector<std::unique_ptr<Recorder>> recorders;
-  recorders.push_back(std::make_unique<RunRecorder>(run_columns));
-  recorders.push_back(std::make_unique<PackingRecorder>());
-  if (!scene.inflow.summaries.empty()) recorders.push_back(std::make_unique<InflowRecorder>(scene.inflow));
+  const auto add_of_run = [&](std::span<const Column<Instant>> table) {
+    recorders.push_back(std::make_unique<RunRecorder<Instant>>(table, [](const Instant& now) { return now; }));
+  };
+  add_of_run(run_columns);
+  recorders.push_back(
+      std::make_unique<RunRecorder<Packing>>(packing_columns, [](const Instant& now) { return now.solver.packing(); }));
+  if (!scene.inflow.summaries.empty())
+    recorders.push_back(
+        std::make_unique<RunRecorder<InflowReading>>(inflow_columns, [&inflow = scene.inflow](const Instant& now) {
+          const std::int64_t passed = now.counted.pulses;
+          return InflowReading{inflow.volume(passed), inflow.energy(passed), inflow.momentum(passed)};
+        }));
   if (GroundForceRecorder::measures(options)) recorders.push_back(std::make_unique<GroundForceRecorder>());
-  if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(budget_columns));
+  if (options.energy_budget) add_of_run(budget_columns);
   if (options.shaking.acts()) {
-    recorders.push_back(std::make_unique<RunRecorder>(shaking_columns));
-    if (options.energy_budget) recorders.push_back(std::make_unique<RunRecorder>(shaking_budget_columns));
+    add_of_run(shaking_columns);
+    if (options.energy_budget) add_of_run(shaking_budget_columns);
   }
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
   if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));
@@ -142,10 +132,6 @@ History::History(const SolveOptions& options, const Scene& scene, HistoryUse use
     : recorders_(make_recorders(options, scene)) {
   if (use == HistoryUse::judged) std::erase_if(recorders_, [](const auto& recorder) { return !recorder->judges(); });
   for (const auto& recorder : recorders_) recorder->add_columns(rows_);
-}
-
-void History::record(const Instant& now) {
-  for (const auto& recorder : recorders_) recorder->record(now, rows_);
 }
 
 void History::keep(RunMemory& memory) const {
@@ -168,10 +154,6 @@ void History::restore(const RunMemory& memory) {
 double History::last(const std::string& name) const {
   const HistoryColumn* column = rows_.find(name);
   return column && !column->values.empty() ? column->values.back() : 0;
-}
-
-void History::conclude() const {
-  for (const auto& recorder : recorders_) recorder->conclude(rows_);
 }
 
 }  // namespace talus::solver

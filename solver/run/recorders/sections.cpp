@@ -7,12 +7,34 @@
 
 #include <fmt/format.h>
 
-#include "common/map/bilinear.hpp"
+#include "common/map/raster.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
-#include "solver/run/recorders/crossing.hpp"
 
 namespace talus::solver {
+
+double turn(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+int crossing(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& from,
+             const std::array<double, 2>& to) {
+  if (std::max(from[0], to[0]) < std::min(a[0], b[0]) || std::min(from[0], to[0]) > std::max(a[0], b[0]) ||
+      std::max(from[1], to[1]) < std::min(a[1], b[1]) || std::min(from[1], to[1]) > std::max(a[1], b[1]))
+    return 0;
+  const bool was_left = turn(a, b, from) >= 0, is_left = turn(a, b, to) >= 0;
+  if (was_left == is_left) return 0;
+  if ((turn(from, to, a) >= 0) == (turn(from, to, b) >= 0)) return 0;  // passes beside the piece
+  return was_left ? 1 : -1;
+}
+
+double distance(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& place) {
+  const double x = b[0] - a[0], y = b[1] - a[1];
+  const double along = ((place[0] - a[0]) * x + (place[1] - a[1]) * y) / (x * x + y * y);
+  const double share = std::clamp(along, 0.0, 1.0);
+  return std::hypot(place[0] - a[0] - share * x, place[1] - a[1] - share * y);
+}
+
 namespace {
 
 constexpr Column<SectionReading> section_columns[] = {
@@ -26,17 +48,7 @@ constexpr Column<SectionReading> section_columns[] = {
 };
 constexpr double gone = -2;  ///< in the place of an easting, which is never below -1/2 [cells]
 
-std::string section_prefix(const std::string& name) { return "section_" + name + "_"; }
-
-std::vector<Place> section_places(const std::vector<SectionOptions>& sections) {
-  std::vector<Place> places;
-  places.reserve(sections.size());
-  for (const SectionOptions& s : sections) places.push_back({section_prefix(s.name), "section " + s.name});
-  return places;
-}
-
-/// The distance from the centre of the map's first cell [cells].
-double cells_from_first(double coordinate, double edge, double cell) { return (coordinate - edge) / cell - 0.5; }
+std::string section_prefix(const std::string& name) { return prefix_of("section", name); }
 
 void check_lines(const std::vector<SectionOptions>& sections, const MapGrid& map) {
   std::vector<Fault> faults;
@@ -101,7 +113,7 @@ std::array<double, 2> place_of(const ParticleState& points, std::size_t p) {
 }  // namespace
 
 SectionRecorder::SectionRecorder(const SolveOptions& options, const Scene& scene)
-    : TableRecorder(section_columns, section_places(options.sections)),
+    : TableRecorder(section_columns, places_of("section", options.sections)),
       map_(scene.map),
       densities_{options.material.density},
       volumes_(scene.points.volume.begin(), scene.points.volume.end()),
@@ -117,9 +129,10 @@ SectionRecorder::SectionRecorder(const SolveOptions& options, const Scene& scene
 /// The line of a section on the grid, with its copies across the way from its first point to its last.
 SectionRecorder::Line SectionRecorder::line_of(const SectionOptions& options, const MapGrid& map) {
   Line line{options.name, {}, {}, {1e300, 1e300}, {-1e300, -1e300}};
-  for (const auto& [x, y] : options.line)
-    line.places.push_back({cells_from_first(x, map.west, map.cell) + off_lattice[0],
-                           cells_from_first(y, map.south, map.cell) + off_lattice[1]});
+  for (const auto& [x, y] : options.line) {
+    const MapPlace place = in_cells(map, x, y);
+    line.places.push_back({place[0] + off_lattice[0], place[1] + off_lattice[1]});
+  }
   const MapPlace& first = line.places.front();
   const bool closed = std::hypot(line.places.back()[0] - first[0], line.places.back()[1] - first[1]) < 1e-6;
   const MapPlace& last = closed ? line.places[1] : line.places.back();
@@ -162,12 +175,6 @@ void SectionRecorder::record(const Instant& now, RunHistory& history) {
   follow(moment);
   expect_inflow(entered);
   TableRecorder::record(now, history);
-}
-
-std::vector<SectionReading> SectionRecorder::samples(const Instant&) const { return readings_; }
-
-double SectionRecorder::mass_of(const ParticleState& points, std::size_t p) const {
-  return points.volume[p] * densities_[static_cast<std::size_t>(points.material[p])];
 }
 
 /// The method takes the places of the points for those of the last record.
@@ -282,8 +289,7 @@ void SectionRecorder::conclude(const RunHistory& history) const {
     if (!(unseen > 0)) continue;
     warn("passed-unseen",
          fmt::format("section {}: {:.4g} m3 left the domain so near to it that they may have crossed it unseen. Move "
-                     "the section "
-                     "away from the edge of the domain, or take a larger domain",
+                     "the section away from the edge of the domain, or take a larger domain",
                      line.name, unseen),
          {{"volume", unseen, "m3"}});
   }

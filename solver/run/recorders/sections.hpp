@@ -8,9 +8,25 @@
 #include <vector>
 
 #include "solver/options/solve.hpp"
-#include "solver/run/recorders/recorder.hpp"
+#include "solver/run/recorders/history.hpp"
 
 namespace talus::solver {
+
+/// Twice the signed area of the triangle a, b, c: positive where c lies to the left of the way from a to b.
+double turn(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& c);
+
+/// What the points of a line are shifted by before paths are held against it [cells]: points of a run lie on lattices,
+/// lines at round coordinates, and where a corner of the one lies on the other a crossing is nobody's. So small a shift
+/// moves no result, and no lattice of cells, nor of single precision about one, comes to lie on the line by it.
+inline constexpr std::array<double, 2> off_lattice{0.7310585786e-9, 0.3678794412e-9};
+
+/// How the straight path from `from` to `to` crosses the piece of a line from `a` to `b`: 1 from its left to its right,
+/// -1 the other way, 0 not at all. Pieces that share an end, and paths that do, count a crossing once.
+int crossing(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& from,
+             const std::array<double, 2>& to);
+
+/// The distance of a place from the piece of a line.
+double distance(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& place);
 
 /// The numbers of a section, of the vertical surface over a line. Volumes are those released, as in all of a run.
 /// "Crossed" counts what passes from the left of the line to its right, less what comes back.
@@ -26,41 +42,36 @@ struct SectionReading {
 
 /// The recorder that counts the points that cross each section between two records: each goes straight from where it
 /// was at one to where it is at the next. A point is no place but stands for what is around it: it is held against
-/// `copies` of the line, spread evenly over the width of a cell, and counts for each with its share, as the maps
-/// spread it over the columns; rows of points would make the discharge jump otherwise. For a line that parts the
-/// domain the volume that passed is so the change of the volume to its right, mean over the copies, to rounding; it is
-/// that of the line itself once nothing is within half a cell of it. What
-/// enters by an inflow comes from its line. Without sections there is no such recorder; with
-/// them a record takes the points from the device.
+/// `copies` of the line, spread evenly over the width of a cell, and counts for each with its share, as the maps spread
+/// it over the columns; rows of points would make the discharge jump otherwise. For a line that parts the domain the
+/// volume that passed is so the change of the volume to its right, mean over the copies, to rounding; it is that of the
+/// line itself once nothing is within half a cell of it. What enters by an inflow comes from its line. Without sections
+/// there is no such recorder; with them a record takes the points from the device.
 class SectionRecorder : public TableRecorder<SectionReading> {
  public:
   static constexpr int copies = 16;  ///< of a line, across the width of a cell
 
-  /// The constructor keeps a reference to the scene's inflow. It throws RecipeError that names every section beyond the
-  /// domain.
+  /// Keeps a reference to the scene's inflow. Throws RecipeError that names every section beyond the domain.
   SectionRecorder(const SolveOptions& options, const Scene& scene);
 
   /// The method counts what crossed, and appends the numbers of every section.
   void record(const Instant& now, RunHistory& history) override;
-  /// The places of the points at the last record.
-  void keep(RunMemory& memory) const override;
+  void keep(RunMemory& memory) const override;  ///< places of the points at the last record
   void restore(const RunMemory& memory) override;
   /// The lines on every section: the volume that passed, the largest discharge and its time.
   void conclude(const RunHistory& history) const override;
 
  protected:
-  std::vector<SectionReading> samples(const Instant& now) const override;
+  std::vector<SectionReading> samples(const Instant&) const override { return readings_; }
 
  private:
   using MapPlace = std::array<double, 2>;  ///< cells from the centre of the map's first one, east and north
-  /// A section on the grid.
   struct Line {
     std::string name;
     std::vector<MapPlace> places;
     std::vector<std::vector<MapPlace>> copies;
     MapPlace low, high;  ///< the box around the copies
   };
-  /// The points of the run at a record.
   struct Moment {
     const ParticleState& points;
     double since = 0;       ///< time since the record before; 0: there was none [s]
@@ -74,7 +85,9 @@ class SectionRecorder : public TableRecorder<SectionReading> {
   void measure_surface(const Line& line, const std::vector<double>& thickness, SectionReading& reading) const;
   void measure_speed(const Line& line, const ParticleState& points, SectionReading& reading) const;
   void count_unseen(const Line& line, const Moment& moment, SectionReading& reading) const;
-  double mass_of(const ParticleState& points, std::size_t p) const;
+  double mass_of(const ParticleState& points, std::size_t p) const {
+    return points.volume[p] * densities_[static_cast<std::size_t>(points.material[p])];
+  }
 
   MapGrid map_;
   std::vector<double> densities_;  ///< of every material [kg/m3]

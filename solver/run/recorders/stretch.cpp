@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "common/stage/findings.hpp"
-#include "solver/parallel/math.hpp"
 
 namespace talus::solver {
 namespace {

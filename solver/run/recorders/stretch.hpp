@@ -4,7 +4,7 @@
 #pragma once
 
 #include "solver/options/solve.hpp"
-#include "solver/run/recorders/recorder.hpp"
+#include "solver/run/recorders/history.hpp"
 
 namespace talus::solver {
 
@@ -27,8 +27,7 @@ class StretchRecorder : public TableRecorder<Overstretched> {
   static constexpr double widest_spacing = 0.65;
 
   StretchRecorder(const SolveOptions& options, const Scene& scene);
-  /// Whether some material of the scene has such a law.
-  static bool watches(const SolveOptions& options);
+  static bool watches(const SolveOptions& options);  ///< whether some material of the scene has such a law
   bool judges() const override { return true; }
   void conclude(const RunHistory& history) const override;
 

@@ -4,18 +4,36 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "common/stage/findings.hpp"
-#include "solver/run/stability/trial_settings.hpp"
 #include "solver/run/stability/weaken.hpp"
 #include "solver/scene/make_scene.hpp"
 #include "solver/scene/make_solver.hpp"
 
 namespace talus::solver {
+
+FactorBracket bracket_factor(const std::function<bool(double)>& holds, const FactorBounds& bounds,
+                             FactorBracket known) {
+  constexpr double longest = 1.25;
+  double stride = known.low > 0 ? 1.02 : longest;
+  FactorBracket found = known;
+  const auto look_at = [&](double factor) { (holds(factor) ? found.low : found.high) = factor; };
+  if (!(found.low > 0) && !std::isfinite(found.high)) look_at(1);
+  if (found.low > 0) {
+    while (!found.closed() && found.low < bounds.largest) {
+      look_at(std::min(stride * found.low, bounds.largest));
+      stride = std::min(stride * stride, longest);
+    }
+  } else {
+    while (!found.closed() && found.high > bounds.least) look_at(std::max(found.high / stride, bounds.least));
+  }
+  while (found.closed() && found.high - found.low > bounds.tolerance * found.low) look_at(found.middle());
+  return found;
+}
+
 namespace {
 
 /// The factor under which the mass is let go, over the one that did not hold.
@@ -128,8 +146,7 @@ Stability StabilitySearch::run() {
   return found;
 }
 
-/// The function brings gravity on, or goes on from the equilibrium `from` where that is given. The state is empty where
-/// no equilibrium is found.
+/// Brings gravity on, or goes on from the equilibrium `from` where given. The state is empty where none is found.
 std::optional<SolverState> StabilitySearch::rest(double factor, const SolverState* from, StabilityTrial& trial) const {
   const Scene scene = weakened_scene(factor);
   SolverSettings settings = static_settings(options_, scene_, factor);

@@ -5,18 +5,37 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "common/domain/domain.hpp"
-#include "solver/integrator/scene.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
-#include "solver/parallel/any_device.hpp"
-#include "solver/run/stability/factor_search.hpp"
 
 namespace talus::solver {
+
+/// Two factors with the limit between them.
+struct FactorBracket {
+  double low = 0;                                         ///< the largest that held; 0: none did
+  double high = std::numeric_limits<double>::infinity();  ///< the smallest that did not; infinity: all held
+  /// Whether both ends were found.
+  bool closed() const { return low > 0 && high < std::numeric_limits<double>::infinity(); }
+  double middle() const { return 0.5 * (low + high); }  ///< middle of a closed bracket
+};
+
+/// How long and how far the search goes.
+struct FactorBounds {
+  double tolerance = 0.005;           ///< width of the bracket over its lower end [-]
+  double least = 0.01, largest = 20;  ///< factors beyond which the search ends [-]
+};
+
+/// The function brackets the factor up to which `holds` is true, which must not become true again beyond it. It begins
+/// at 1 and goes up or down by a quarter until the answer changes; above a lower end that is `known` it goes up by 2 %
+/// first, and by more each time. It halves the bracket from there on.
+FactorBracket bracket_factor(const std::function<bool(double)>& holds, const FactorBounds& bounds,
+                             FactorBracket known = {});
 
 /// A factor that was tried: whether the ground so weakened finds an equilibrium under its weight.
 struct StabilityTrial {
@@ -37,7 +56,6 @@ struct Failure {
   std::vector<double> shares = {};  ///< of every point of the domain, by id: its way over that [-]; empty: not computed
 };
 
-/// The outcome of a search.
 struct Stability {
   FactorBracket factor;
   std::vector<StabilityTrial> trials;  ///< in their order
@@ -48,15 +66,13 @@ struct Stability {
 /// The search for the factor of safety of a scene.
 class StabilitySearch {
  public:
-  /// The constructor keeps references to `domain` and makes the scene. It throws RecipeError and DataError as
-  /// make_scene() does.
+  /// Keeps references to `domain` and makes the scene. Throws RecipeError and DataError as make_scene() does.
   StabilitySearch(const Domain& domain, const SolveOptions& options, const AnyDevice& device);
 
   /// The method brackets the factor and lets the mass fail. It throws Interrupted.
   Stability run();
 
-  /// The scene that it looks at, without weight.
-  const Scene& scene() const { return scene_; }
+  const Scene& scene() const { return scene_; }  ///< scene that it looks at, without weight
   /// The options that the ground is computed with: stiffer than the recipe's where that is soft.
   const SolveOptions& options() const { return options_; }
 

@@ -3,7 +3,7 @@
 #include "solver/run/stability/weaken.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <array>
 
 namespace talus::solver {
 namespace {
@@ -27,6 +27,16 @@ void weaken(Bed<double>& bed, FrictionLaw law, double factor) {
     if constexpr (requires { own.weaken(bed.numbers, factor); }) own.weaken(bed.numbers, factor);
   });
 }
+
+/// An equilibrium is found where this share of the forces is left unbalanced, at most; what fails leaves some
+/// thousandths (docs/notes/stability-and-shaking.md).
+constexpr double balanced = 1e-4;
+constexpr int most_iterations = 80;
+/// Iterations without a halving of the unbalanced force after which a trial is given up: those that found an
+/// equilibrium took up to 38. A step in time that is given up is made in two halves, so that it need not wait so long.
+constexpr int patience_at_rest = 40, patience_in_motion = 12;
+/// Nodes in a section up to which the tangent is factorised: a strip one cell wide and 60 cells high.
+constexpr int narrow_section = 128;
 
 }  // namespace
 
@@ -61,6 +71,56 @@ BaseFriction<double> weakened(BaseFriction<double> bed, double factor) {
 std::vector<Bed<double>> weakened(std::vector<Bed<double>> columns, FrictionLaw law, double factor) {
   for (Bed<double>& column : columns) weaken(column, law, factor);
   return columns;
+}
+
+SolverSettings static_settings(const SolveOptions& options, const Scene& scene, double factor) {
+  SolverSettings s = make_settings(weakened(options, factor), scene.grid);
+  s.common.precision = Precision::double_;
+  s.integrator = Integrator::quasi_static;
+  s.common.gravity_ramp = 1;
+  s.common.bed = weakened(s.common.bed, factor);
+  s.common.separation = {};
+  s.common.damping = 0;
+  for (PlaneWall& wall : s.common.walls) wall.to = 1e30;
+  std::erase_if(s.common.loads, [](const LoadOptions& load) { return load.from > 0; });
+  for (LoadOptions& load : s.common.loads) {
+    load.ramp = 1;
+    load.to = 1e30;
+  }
+  s.implicit.dynamic = false;
+  s.implicit.step = 1;
+  s.implicit.step_cuts = 0;
+  s.implicit.b_bar = true;
+  s.implicit.newton_iterations = std::max(s.implicit.newton_iterations, most_iterations);
+  s.implicit.tolerance = balanced;
+  s.implicit.patience = patience_at_rest;
+  if (s.implicit.linear_solver == LinearSolver::pcg && options.obstacles.empty() && narrow(scene.points))
+    s.implicit.linear_solver = LinearSolver::cholesky;
+  return s;
+}
+
+SolverSettings falling_settings(const SolveOptions& options, const Scene& scene, double factor, double step) {
+  SolverSettings s = static_settings(options, scene, factor);
+  s.integrator = Integrator::newmark;
+  s.implicit.dynamic = true;
+  s.implicit.alpha = 0.5;
+  s.implicit.beta = 1;
+  s.implicit.step = step;
+  s.implicit.step_cuts = 8;
+  s.implicit.patience = patience_in_motion;
+  s.common.gravity_ramp = 0;
+  return s;
+}
+
+bool narrow(const ParticleState& points) {
+  std::array<int, 3> nodes{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [least, most] = std::ranges::minmax_element(points.cell[a]);
+    if (least == points.cell[a].end()) return false;
+    nodes[a] = *most - *least + 2;
+  }
+  std::ranges::sort(nodes);
+  return nodes[0] * nodes[1] <= narrow_section;
 }
 
 }  // namespace talus::solver

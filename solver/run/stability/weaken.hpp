@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "common/domain/domain.hpp"
-#include "solver/boundary/base_friction.hpp"
+#include "solver/integrator/scene.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/scene/settings.hpp"
 
 namespace talus::solver {
 
@@ -15,8 +16,7 @@ namespace talus::solver {
 /// where they are, far below a cell's size [-].
 inline constexpr double strain_of_searches = 1e-3;
 
-/// The factor, at least 1, by which all moduli have to be multiplied so that the ground strains no more than that under
-/// its own weight.
+/// The factor, at least 1, of all moduli with which the ground strains no more than that under its own weight.
 double stiffening_of(const Domain& domain, const SolveOptions& options);
 
 /// The options with all moduli multiplied by this factor.
@@ -31,5 +31,15 @@ BaseFriction<double> weakened(BaseFriction<double> bed, double factor);
 
 /// The numbers of all columns of a bed with this law, divided by the factor.
 std::vector<Bed<double>> weakened(std::vector<Bed<double>> columns, FrictionLaw law, double factor);
+
+/// The settings of one step that brings gravity on, from time 0 to 1, with the strength divided by `factor`.
+SolverSettings static_settings(const SolveOptions& options, const Scene& scene, double factor);
+
+/// The same for backward Euler steps of this length [s], with all gravity there.
+SolverSettings falling_settings(const SolveOptions& options, const Scene& scene, double factor, double step);
+
+/// Whether the ground is so narrow, as a strip in plane strain is, that factorising its tangent takes less time than
+/// conjugate gradients: few nodes in a section across its longest side.
+bool narrow(const ParticleState& points);
 
 }  // namespace talus::solver

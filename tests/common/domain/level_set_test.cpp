@@ -8,19 +8,19 @@
 
 #include <openvdb/io/File.h>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
 #include "common/domain/domain.hpp"
-#include "common/domain/write_grids.hpp"
-#include "common/stage/crash_report.hpp"
-#include "tests/common/damage.hpp"
+#include "common/domain/grids.hpp"
+#include "common/stage/signals.hpp"
+#include "tests/common/scratch.hpp"
 
 namespace talus {
 namespace {
 
 using test::fault_of;
+using test::holds;
 using test::Scratch;
 
 constexpr std::array<double, 3> one_metre{1, 1, 1};  // the largest facets
@@ -32,9 +32,7 @@ SolidBody ball(const std::string& name, double x, double y, double z, double rad
           [=](double px, double py, double pz) { return std::hypot(px - x, py - y, pz - z) - radius; }};
 }
 
-struct LevelSet : testing::Test {
-  const Scratch scratch;
-};
+using LevelSet = test::InScratch;
 
 TEST_F(LevelSet, surface_of_a_ball_far_from_the_origin) {
   write_level_sets(scratch / "ball.vdb", {ball("ball", 512345.3, 5432100.7, 1234.5, 10)}, 0.5);
@@ -61,20 +59,22 @@ TEST_F(LevelSet, surface_of_a_body_in_memory_is_that_of_its_file) {
   write_level_sets(scratch / "ball.vdb", {body}, 0.5);
   const BodySurface file = read_level_set(scratch / "ball.vdb", "", {0.3, 0.4, 0.5});
   const BodySurface memory = surface_of({body, 0.5}, {0.3, 0.4, 0.5});
-  EXPECT_EQ(memory.volume, file.volume);
-  EXPECT_EQ(memory.low, file.low);
+  test::expect_same(memory, file, &BodySurface::volume, &BodySurface::low);
   ASSERT_EQ(memory.facets.size(), file.facets.size());
   for (std::size_t f = 0; f < file.facets.size(); ++f) EXPECT_EQ(memory.facets[f].area, file.facets[f].area) << f;
-  EXPECT_NE(fault_of<DataError>([&] { surface_of({ball("dust", 0.26, 0.26, 0.26, 0.1), 1}, {1, 1, 1}); }), "");
+  EXPECT_NE(data_fault([&] { surface_of({ball("dust", 0.26, 0.26, 0.26, 0.1), 1}, {1, 1, 1}); }), "");
 }
 
-TEST_F(LevelSet, several_bodies_are_told_apart_by_name) {
+TEST_F(LevelSet, several_bodies_are_told_apart_by_name_and_a_changed_byte_is_noticed_before_openvdb_sees_it) {
   write_level_sets(scratch / "two.vdb", {ball("small", 0, 0, 0, 3), ball("large", 20, 0, 0, 6)}, 0.5);
   EXPECT_NEAR(read_level_set(scratch / "two.vdb", "large", {9, 9, 9}).volume, 904.8, 18);
-  EXPECT_TRUE(
-      test::holds(fault_of<DataError>([&] { read_level_set(scratch / "two.vdb", "", one_metre); }), {"holds 2 grids"}));
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_level_set(scratch / "two.vdb", "medium", one_metre); }),
-                          {"large, small"}));
+  EXPECT_TRUE(holds(data_fault([&] { read_level_set(scratch / "two.vdb", "", one_metre); }), {"holds 2 grids"}));
+  EXPECT_TRUE(holds(data_fault([&] { read_level_set(scratch / "two.vdb", "medium", one_metre); }), {"large, small"}));
+  write_level_sets(scratch / "ball.vdb", {ball("ball", 0, 0, 0, 3)}, 0.5);
+  std::string changed = test::text_of(scratch / "ball.vdb");
+  changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 1);
+  const auto file = scratch.write("changed.vdb", changed);
+  EXPECT_TRUE(holds(data_fault([&] { read_level_set(file, "", one_metre); }), {"is damaged (bytes have changed"}));
 }
 
 TEST_F(LevelSet, a_file_of_another_program_is_read_to_the_same_surface) {
@@ -82,21 +82,9 @@ TEST_F(LevelSet, a_file_of_another_program_is_read_to_the_same_surface) {
   const BodySurface ours = read_level_set(scratch / "ball.vdb", "", {0.3, 0.3, 0.3});
   const auto foreign = scratch.write("foreign.vdb", test::without_seal(scratch / "ball.vdb"));
   const BodySurface theirs = read_level_set(foreign, "ball", {0.3, 0.3, 0.3});
-  EXPECT_EQ(theirs.volume, ours.volume);
-  EXPECT_EQ(theirs.low, ours.low);
-  EXPECT_EQ(theirs.high, ours.high);
+  test::expect_same(theirs, ours, &BodySurface::volume, &BodySurface::low, &BodySurface::high);
   ASSERT_EQ(theirs.facets.size(), ours.facets.size());
-  EXPECT_EQ(theirs.facets.back().centre, ours.facets.back().centre);
-  EXPECT_EQ(theirs.facets.back().area, ours.facets.back().area);
-}
-
-TEST_F(LevelSet, a_changed_byte_is_noticed_before_openvdb_sees_it) {
-  write_level_sets(scratch / "ball.vdb", {ball("ball", 0, 0, 0, 3)}, 0.5);
-  std::string changed = test::text_of(scratch / "ball.vdb");
-  changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 1);
-  const auto file = scratch.write("changed.vdb", changed);
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_level_set(file, "", one_metre); }),
-                          {"is damaged (bytes have changed"}));
+  test::expect_same(theirs.facets.back(), ours.facets.back(), &Facet::centre, &Facet::area);
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers report crashes themselves
@@ -151,18 +139,16 @@ std::string level_set_fault_after(const std::function<void(openvdb::FloatGrid&)>
 
 TEST_F(LevelSet, numbers_that_cannot_be_are_refused) {
   EXPECT_EQ(level_set_fault_after([](openvdb::FloatGrid&) {}), "");
-  EXPECT_TRUE(test::holds(level_set_fault_after([](openvdb::FloatGrid& grid) {
-                            grid.setTransform(openvdb::math::Transform::createLinearTransform(1e8));
-                          }),
-                          {"its voxels have 1e+24 m3"}));
-  EXPECT_TRUE(test::holds(level_set_fault_after([](openvdb::FloatGrid& grid) {
-                            grid.setTransform(openvdb::math::Transform::createLinearTransform(1e5));
-                          }),
-                          {"is too large for this grid"}));
-  EXPECT_TRUE(test::holds(level_set_fault_after([](openvdb::FloatGrid& grid) {
-                            grid.tree().setValueOn({0, 0, 6}, std::numeric_limits<float>::quiet_NaN());
-                          }),
-                          {"at voxel 0 0 6 it holds nan"}));
+  const auto of_voxels = [](double size) {
+    return level_set_fault_after(
+        [&](openvdb::FloatGrid& grid) { grid.setTransform(openvdb::math::Transform::createLinearTransform(size)); });
+  };
+  EXPECT_TRUE(holds(of_voxels(1e8), {"its voxels have 1e+24 m3"}));
+  EXPECT_TRUE(holds(of_voxels(1e5), {"is too large for this grid"}));
+  EXPECT_TRUE(holds(level_set_fault_after([](openvdb::FloatGrid& grid) {
+                      grid.tree().setValueOn({0, 0, 6}, std::numeric_limits<float>::quiet_NaN());
+                    }),
+                    {"at voxel 0 0 6 it holds nan"}));
 }
 
 TEST_F(LevelSet, refuses_what_is_none) {
@@ -172,8 +158,8 @@ TEST_F(LevelSet, refuses_what_is_none) {
   domain.layer_height = 1;
   domain.terrain = domain.before = domain.release_thickness = {domain.grid, std::vector<double>(16, 1.0)};
   write_domain(scratch / "domain.vdb", domain);
-  EXPECT_TRUE(test::holds(fault_of<DataError>([&] { read_level_set(scratch / "domain.vdb", "terrain", one_metre); }),
-                          {"is no level set"}));
+  EXPECT_TRUE(
+      holds(data_fault([&] { read_level_set(scratch / "domain.vdb", "terrain", one_metre); }), {"is no level set"}));
   EXPECT_THROW(write_level_sets(scratch / "thin.vdb", {ball("dust", 0.26, 0.26, 0.26, 0.1)}, 1), DataError);
   EXPECT_FALSE(std::filesystem::exists(scratch / "thin.vdb"));
 }
@@ -187,16 +173,7 @@ openvdb::GridPtrVec small_grid() {
 }
 
 // openvdb::io::File ends well here.
-TEST(WriteGrids, a_write_that_fails_is_an_error) {
-  try {
-    write_grids("/dev/full", "walls.vdb", small_grid());
-    FAIL() << "nothing was said of a disk that takes no byte";
-  } catch (const DataError& error) {
-    EXPECT_TRUE(test::holds(error.what(), {"walls.vdb: cannot be written", "the disk is full"}));
-  }
-}
-
-TEST(WriteGrids, what_is_written_is_read_again) {
+TEST(WriteGrids, what_is_written_is_read_again_and_a_write_that_fails_is_an_error) {
   const Scratch scratch;
   write_grids(scratch / "one.vdb", "one.vdb", small_grid());
   openvdb::io::File file((scratch / "one.vdb").string());
@@ -204,6 +181,8 @@ TEST(WriteGrids, what_is_written_is_read_again) {
   const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("one"));
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->tree().getValue({1, 2, 3}), 4.0F);
+  const std::string fault = fault_of<DataError>([] { write_grids("/dev/full", "walls.vdb", small_grid()); });
+  EXPECT_TRUE(holds(fault, {"walls.vdb: cannot be written", "the disk is full"}));
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 // One small grid in every dialect that is met in the wild; each must read as the same raster, to the bit.
 #include <cstdlib>
 
-#include "common/gis/ascii_header.hpp"
+#include "common/gis/ascii_grid.hpp"
 #include "common/gis/crs.hpp"
+#include "common/gis/escaped_xml.hpp"
 #include "common/gis/raster_file.hpp"
-#include "common/gis/read_raster.hpp"
-#include "common/map/crop.hpp"
+#include "common/map/raster.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/common/scratch.hpp"
 
@@ -15,7 +15,6 @@ namespace talus {
 namespace {
 
 using test::epsg;
-using test::fault_of;
 using test::identical;
 using test::Scratch;
 using test::small_raster;
@@ -111,38 +110,30 @@ INSTANTIATE_TEST_SUITE_P(
         Dialect{"nodata_of_microsoft", with(usual + cells, "-9999", "-1.#IND")}),
     [](const auto& dialect) { return std::string(dialect.param.name); });
 
-TEST(AsciiGrid, has_its_crs_in_a_file_beside) {
-  const Scratch scratch;
+using AsciiGrid = test::InScratch;
+
+TEST_F(AsciiGrid, has_its_crs_in_a_file_beside) {
   scratch.write("dem.asc", usual + cells);
   scratch.write("odd.asc", "# by hand\n" + usual + cells);
   scratch.write("words.asc", usual + with(cells, "-9999", "*"));
   const std::string command =
       "cd " + scratch.folder().string() +
-      " && gdalsrsinfo -o wkt_esri EPSG:32611 | sed /^$/d > dem.prj && cp dem.prj odd.prj && cp "
-      "dem.prj words.PRJ";
+      " && gdalsrsinfo -o wkt_esri EPSG:32611 | sed /^$/d > dem.prj && cp dem.prj odd.prj && cp dem.prj words.PRJ";
   ASSERT_EQ(std::system(command.c_str()), 0);
   for (const char* name : {"dem.asc", "odd.asc", "words.asc"})
     EXPECT_TRUE(same_crs(RasterFile(scratch / name).grid().crs_wkt, epsg(32611))) << name;
 }
 
-TEST(AsciiGrid, names_the_line_and_the_word_that_is_no_number) {
-  const Scratch scratch;
+TEST_F(AsciiGrid, with_a_word_that_is_no_number_or_cut_short_is_a_fault) {
   const auto file = scratch.write("dem.asc", usual + "1 2 3\n4 fie 6\n");
-  EXPECT_EQ(fault_of<DataError>([&] { read_raster(file); }),
-            file.string() +
-                ": line 8: \"fie\" (a cell of an ASCII grid is a number). Mend the line; cells without value hold the "
-                "NODATA_value of the header, or *");
+  EXPECT_EQ(data_fault([&] { read_raster(file); }),
+            "./dem.asc: line 8: \"fie\" (a cell of an ASCII grid is a number). Mend the line; cells without value hold "
+            "the NODATA_value of the header, or *");
+  const auto brief = scratch.write("brief.asc", "# comment\n" + usual + "1 2 3\n4\n");
+  EXPECT_TRUE(test::begins(data_fault([&] { read_raster(brief); }), "./brief.asc: its cells cannot be read ("));
 }
 
-TEST(AsciiGrid, cut_short_is_a_fault) {
-  const Scratch scratch;
-  const auto file = scratch.write("dem.asc", "# comment\n" + usual + "1 2 3\n4\n");
-  const std::string text = fault_of<DataError>([&] { read_raster(file); });
-  EXPECT_EQ(text.find(file.string() + ": its cells cannot be read ("), 0u) << text;
-}
-
-TEST(AsciiGrid, windows_of_one_with_an_odd_header_equal_the_whole) {
-  const Scratch scratch;
+TEST_F(AsciiGrid, windows_of_one_with_an_odd_header_equal_the_whole) {
   std::string text = "# odd\n" + with(with(usual, "ncols 3", "ncols 50"), "nrows 2", "nrows 40");
   for (int i = 0; i < 2000; ++i) text += std::to_string(0.37 * i) + (i % 50 == 49 ? "\n" : " ");
   const RasterFile file(scratch.write("dem.asc", text));
@@ -152,11 +143,21 @@ TEST(AsciiGrid, windows_of_one_with_an_odd_header_equal_the_whole) {
   EXPECT_EQ(file.read({10, 20, 7, 5}).values, cut(whole, {10, 20, 7, 5}).values);
 }
 
-TEST(AsciiGrid, text_that_is_none_has_no_header) {
+TEST_F(AsciiGrid, text_that_is_none_has_no_header) {
   EXPECT_FALSE(ascii_header("x,y,z\n1,2,3\n"));
   EXPECT_FALSE(ascii_header("north: 30\nsouth: 20\neast: 25\nwest: 10\nrows: 2\ncols: 3\n1 2 3\n4 5 6\n"));  // GRASS
   EXPECT_FALSE(ascii_header(""));
   EXPECT_TRUE(ascii_header(usual + cells)->usual);
+}
+
+TEST(EscapedXml, marks_up_nothing_keeps_other_text_and_leaves_control_characters_out) {
+  EXPECT_EQ(escaped_xml("a <b> & \"c\""), "a &lt;b&gt; &amp; &quot;c&quot;");
+  EXPECT_EQ(escaped_xml("</script><!--"), "&lt;/script&gt;&lt;!--");
+  EXPECT_EQ(escaped_xml(""), "");
+  EXPECT_EQ(escaped_xml("Rüfe, 15° 'x'"), "Rüfe, 15° 'x'");
+  EXPECT_EQ(escaped_xml("a\x01"
+                        "b\tc"),
+            "ab\tc");
 }
 
 }  // namespace

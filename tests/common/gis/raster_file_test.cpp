@@ -1,22 +1,25 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "common/gis/raster_file.hpp"
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <sys/stat.h>
+
 #include "common/gis/crs.hpp"
+#include "common/gis/features.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/geotiff.hpp"
-#include "common/gis/read_raster.hpp"
-
-#include <gdal_priv.h>
-
-#include "common/gis/vertical_unit.hpp"
+#include "common/gis/local_only.hpp"
+#include "common/gis/raster_file.hpp"
+#include "common/gis/resampling.hpp"
 #include "tests/common/rasters.hpp"
-#include "tests/common/tools.hpp"
+#include "tests/common/scratch.hpp"
 
 namespace talus {
 namespace {
 
+using test::begins;
 using test::epsg;
-using test::fault_of;
+using test::holds;
 using test::identical;
 using test::random_raster;
 using test::small_raster;
@@ -131,28 +134,22 @@ TEST_F(Opened, a_window_without_any_value_is_no_fault_but_a_raster_is) {
   write_geotiff(scratch / "b.tif", raster, {"z", "m", {}});
   const RasterFile none(scratch / "b.tif");
   EXPECT_TRUE(std::isnan(none.read({0, 0, 1, 1}).at(0, 0)));
-  EXPECT_NE(fault_of<DataError>([&] { none.read(); }), "");
+  EXPECT_NE(data_fault([&] { none.read(); }), "");
 }
 
-TEST_F(Opened, declared_feet_of_height_become_metres_and_the_log_says_so) {
+TEST_F(Opened, heights_in_feet_declared_by_the_file_its_crs_or_the_recipe_become_metres) {
   write_geotiff(scratch / "h.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {1000, std::nan("")}), {"z", "ft", {}});
   testing::internal::CaptureStderr();
   const Raster metres = read_raster(scratch / "h.tif");
-  EXPECT_TRUE(test::holds(testing::internal::GetCapturedStderr(),
-                          {"h.tif: heights are in ft, converted to metres (x 0.3048)"}));
+  EXPECT_TRUE(
+      holds(testing::internal::GetCapturedStderr(), {"h.tif: heights are in ft, converted to metres (x 0.3048)"}));
   EXPECT_DOUBLE_EQ(metres.at(0, 0), 304.8);
   EXPECT_TRUE(std::isnan(metres.at(1, 0)));
-}
-
-TEST_F(Opened, feet_of_a_vertical_crs_become_metres) {
   write_geotiff(scratch / "a.tif", small_raster({1, 1, 500000, 5500000, 1, epsg(26911)}, {1000}), {"z", "", {}});
   shell("gdal_translate -a_srs EPSG:26911+6360 a.tif h.tif");  // NAVD88 in US survey feet
-  const Raster metres = read_raster(scratch / "h.tif");
-  EXPECT_DOUBLE_EQ(metres.at(0, 0), 1000 * 1200.0 / 3937.0);
-  EXPECT_TRUE(same_crs(metres.grid.crs_wkt, epsg(26911)));
-}
-
-TEST_F(Opened, the_recipe_may_say_what_heights_are_in) {
+  const Raster surveyed = read_raster(scratch / "h.tif");
+  EXPECT_DOUBLE_EQ(surveyed.at(0, 0), 1000 * 1200.0 / 3937.0);
+  EXPECT_TRUE(same_crs(surveyed.grid.crs_wkt, epsg(26911)));
   write_geotiff(scratch / "a.tif", small_raster({1, 1, 0, 0, 1, epsg(32611)}, {1000}), {"z", "ft", {}});
   const auto read_as = [&](const char* unit) { return RasterFile(scratch / "a.tif", {"", unit, ""}).read().at(0, 0); };
   EXPECT_EQ(read_as("metre"), 1000);
@@ -162,12 +159,9 @@ TEST_F(Opened, the_recipe_may_say_what_heights_are_in) {
 
 TEST_F(Opened, refuses_an_unknown_unit_with_the_command_that_mends_it) {
   write_geotiff(scratch / "a.tif", small_raster({1, 1, 0, 0, 1, epsg(32611)}, {1000}), {"z", "fathom", {}});
-  const std::string text = fault_of<DataError>([&] { read_raster(scratch / "a.tif"); });
-  EXPECT_EQ(text,
-            file("a.tif") +
-                ": its values are in \"fathom\" (this unit of length is not known, and this stage needs metres). If "
-                "they are metres, say so: gdal_edit.py -units m " +
-                file("a.tif"));
+  EXPECT_EQ(data_fault([&] { read_raster(scratch / "a.tif"); }),
+            "./a.tif: its values are in \"fathom\" (this unit of length is not known, and this stage needs metres). If "
+            "they are metres, say so: gdal_edit.py -units m ./a.tif");
   shell("gdal_edit.py -units m " + file("a.tif"));
   EXPECT_EQ(read_raster(scratch / "a.tif").at(0, 0), 1000);
 }
@@ -240,8 +234,8 @@ TEST_F(Geographic, a_raster_in_degrees_is_reprojected_on_request) {
   write("d.tif", west);
   testing::internal::CaptureStderr();
   const RasterFile opened(scratch / "d.tif", {utm_crs_of(scratch / "d.tif"), "", ""});
-  EXPECT_TRUE(test::holds(testing::internal::GetCapturedStderr(),
-                          {"d.tif: reprojected from EPSG:4326 to EPSG:32611, cells of 25 m"}));
+  EXPECT_TRUE(holds(testing::internal::GetCapturedStderr(),
+                    {"d.tif: reprojected from EPSG:4326 to EPSG:32611, cells of 25 m"}));
   const MapGrid& grid = opened.grid();
   EXPECT_EQ(crs_name(grid.crs_wkt), "EPSG:32611");
   EXPECT_EQ(grid.cell, 25);  // of 28.9 x 22.2 m
@@ -267,7 +261,7 @@ TEST_F(Geographic, nodata_that_is_not_declared_does_not_leak_into_what_is_reproj
   write("d.tif", west, 150);  // a line of -9999, undeclared
   testing::internal::CaptureStderr();
   const Raster raster = RasterFile(scratch / "d.tif", {epsg(32611), "", ""}).read();
-  EXPECT_TRUE(test::holds(testing::internal::GetCapturedStderr(), {"-9999 or the like"}));
+  EXPECT_TRUE(holds(testing::internal::GetCapturedStderr(), {"-9999 or the like"}));
   double lowest = 1e9;
   for (const double z : raster.values)
     if (!std::isnan(z)) lowest = std::min(lowest, z);
@@ -293,17 +287,14 @@ TEST_F(Geographic, feet_in_the_plane_and_of_height_are_both_converted) {
   EXPECT_GT(highest, 40 * foot);
 }
 
-TEST_F(Geographic, a_fault_in_a_cell_is_told_through_the_warper) {
+TEST_F(Geographic, a_fault_in_a_cell_is_told_through_the_warper_and_refusing_degrees_offers_what_the_caller_offers) {
   Raster raster = random_raster({40, 40, -114.4, 49.5, 0.001, epsg(4326)}, 5);
   raster.at(20, 20) = std::numeric_limits<double>::infinity();
   write_geotiff(scratch / "i.tif", raster, {"z", "m", {}});
-  const std::string text = fault_of<DataError>([&] { RasterFile(scratch / "i.tif", {epsg(32611), "", ""}).read(); });
-  EXPECT_TRUE(text.starts_with(file("i.tif") + ": column 21, line 20 (x -114.38, y 49.52) is infinite")) << text;
-}
-
-TEST_F(Geographic, refusing_degrees_offers_what_the_caller_offers) {
+  const std::string fault = data_fault([&] { RasterFile(scratch / "i.tif", {epsg(32611), "", ""}).read(); });
+  EXPECT_TRUE(begins(fault, "./i.tif: column 21, line 20 (x -114.38, y 49.52) is infinite"));
   write("d.tif", west);
-  const std::string text = fault_of<DataError>([&] { RasterFile(scratch / "d.tif", {"", "", "or ask for UTM"}); });
+  const std::string text = data_fault([&] { RasterFile(scratch / "d.tif", {"", "", "or ask for UTM"}); });
   EXPECT_TRUE(text.ends_with(" d_utm.tif; or ask for UTM")) << text;
 }
 
@@ -324,8 +315,69 @@ TEST_F(Opened, utm_zones_are_those_of_the_place) {
   EXPECT_EQ(zone(179.7, -40), "EPSG:32760");
   EXPECT_EQ(zone(-179.9, -40), "EPSG:32701");
   EXPECT_EQ(zone(5.3, 60.4), "EPSG:32632");  // Bergen
-  const std::string text = fault_of<DataError>([&] { zone(20, 88); });
-  EXPECT_TRUE(text.starts_with(file("a.tif") + ": its centre, 20.1, 88.1 in EPSG:4326, lies in no UTM zone")) << text;
+  EXPECT_TRUE(
+      begins(data_fault([&] { zone(20, 88); }), "./a.tif: its centre, 20.1, 88.1 in EPSG:4326, lies in no UTM zone"));
+}
+
+struct LocalOnly : test::InScratch {
+  std::string refusal(const std::filesystem::path& file) const {
+    return data_fault([&] { RasterFile{file}; });
+  }
+  /// A mosaic of one source, of a size and with more XML in it.
+  std::filesystem::path vrt(const std::string& source, long size = 4, const std::string& more = "") const {
+    return scratch.write(
+        "mosaic.vrt", fmt::format("<VRTDataset rasterXSize=\"{0}\" "
+                                  "rasterYSize=\"{0}\"><GeoTransform>0,10,0,40,0,-10</GeoTransform>{2}<VRTRasterBand "
+                                  "dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename "
+                                  "relativeToVRT=\"1\">{1}</SourceFilename><SourceBand>1</SourceBand></SimpleSource></"
+                                  "VRTRasterBand></VRTDataset>",
+                                  size, source, more));
+  }
+};
+
+TEST_F(LocalOnly, gdal_itself_opens_nothing_beyond_this_machine_and_mosaics_of_it_are_refused_before) {
+  const gdal::QuietErrors errors;
+  EXPECT_FALSE(gdal::Dataset(GDALDataset::Open("/vsicurl/http://127.0.0.1:1/a.tif")));
+  for (const char* name : {"HTTP", "WMS", "PostgreSQL", "WFS", "GPSBabel"})
+    EXPECT_EQ(GetGDALDriverManager()->GetDriverByName(name), nullptr) << name;
+  for (const std::string source : {"/vsicurl/http://127.0.0.1:1/a.tif", "http://127.0.0.1:1/a.tif", "PG:dbname=x",
+                                   "/vsizip//vsicurl/http://127.0.0.1:1/a.zip/a.tif", "/vsis3/bucket/a.tif",
+                                   "/vsistdin/", "WMS:http://127.0.0.1:1/?LAYERS=a"})
+    EXPECT_TRUE(holds(refusal(vrt(source)), {"it names " + source, "or give --network"}));
+  EXPECT_TRUE(holds(refusal("WMS:http://127.0.0.1:1/?LAYERS=a"), {"nothing is fetched"}));
+  EXPECT_TRUE(holds(data_fault([] { read_polygons("PG:dbname=x", ""); }), {"nothing is fetched"}));
+}
+
+TEST_F(LocalOnly, an_address_that_is_no_source_is_no_matter_but_more_cells_than_memory_holds_are) {
+  const MapGrid grid{4, 4, 0, 0, 10, ""};
+  write_geotiff(scratch / "a.tif", test::random_raster(grid, 1), {});
+  const auto file = vrt("a.tif", 4, "<Metadata><MDI key=\"LICENCE\">https://example.org/by/4.0</MDI></Metadata>");
+  EXPECT_EQ(refusal(file), "");
+  const RasterFile large(vrt("a.tif", 2000000000));
+  EXPECT_TRUE(holds(data_fault([&] { large.read(); }), {"2000000000 x 2000000000 cells (3.2e+07 TB are needed"}));
+  EXPECT_EQ(data_fault([&] { large.read({0, 1999999996, 4, 4}); }), "") << "a part of it is read";
+}
+
+TEST_F(LocalOnly, pipes_are_refused_also_behind_a_mosaic_of_a_mosaic) {
+  const auto pipe = scratch / "pipe.tif";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_TRUE(holds(refusal(pipe), {"it is a pipe"}));
+  EXPECT_TRUE(holds(data_fault([&] { read_polygons(pipe, ""); }), {"it is a pipe"}));
+  vrt("pipe.tif");
+  std::filesystem::rename(scratch / "mosaic.vrt", scratch / "inner.vrt");
+  EXPECT_TRUE(holds(refusal(vrt("inner.vrt")), {"it is a pipe"}));
+  EXPECT_FALSE(with_sidecars({pipe}).empty()) << "listed, and not waited for";
+}
+
+TEST_F(LocalOnly, cells_that_numbers_do_not_tell_apart_are_refused) {
+  MapGrid grid{4, 4, 1e17, 0, 10, ""};
+  EXPECT_TRUE(begins(data_fault([&] { require_told_apart(grid, "far.tif"); }),
+                     "far.tif: west 1e+17, south 0, cells of 10 m (coordinates that large are 16 m apart"));
+  grid.west = 5e7;
+  grid.cell = 0.01;
+  EXPECT_NO_THROW(require_told_apart(grid, "")) << "millimetres, on the largest maps";
+  write_geotiff(scratch / "far.tif", test::random_raster({4, 4, 1e17, 0, 10, ""}, 1), {});
+  EXPECT_TRUE(holds(refusal(scratch / "far.tif"), {"cannot be told from one another"}));
 }
 
 }  // namespace

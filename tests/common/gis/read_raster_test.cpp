@@ -6,23 +6,24 @@
 
 #include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
-#include "common/gis/raster_writer.hpp"
-#include "common/gis/read_raster.hpp"
+#include "common/gis/raster_file.hpp"
+#include "common/map/raster.hpp"
 #include "tests/common/rasters.hpp"
-#include "tests/common/tools.hpp"
+#include "tests/common/scratch.hpp"
 
 namespace talus {
 namespace {
 
+using test::begins;
 using test::epsg;
-using test::fault_of;
+using test::holds;
 using test::identical;
 using test::random_raster;
 using test::small_raster;
 
 struct RasterFile : test::Workshop {
-  std::string fault(const std::filesystem::path& file) {
-    return fault_of<DataError>([&] { read_raster(file); });
+  std::string fault(const std::string& file) const {
+    return data_fault([&] { read_raster(scratch / file); });
   }
   /// The command a fault proposes, run as it stands; `made` is what it writes.
   Raster mended(const std::string& fault_text, const std::string& made) const {
@@ -55,8 +56,8 @@ TEST_F(RasterFile, a_large_cog_has_overviews_and_passes_gdals_own_validator) {
     for (int column = 0; column < 700; ++column) raster.at(column, row) = std::nan("");
   write_cog(scratch / "large.tif", raster, {"z", "m", {}});
   test::expect_valid_cog(scratch / "large.tif");
-  const auto info = test::output_of("gdalinfo '" + (scratch / "large.tif").string() + "'");
-  EXPECT_TRUE(test::holds(info, {"Overviews: 650x550, 325x275", "Block=512x512"}));
+  EXPECT_TRUE(
+      holds(test::output_of("gdalinfo '" + file("large.tif") + "'"), {"Overviews: 650x550, 325x275", "Block=512x512"}));
 }
 
 TEST_F(RasterFile, a_small_cog_is_one_tile_no_larger_than_it_needs_and_valid) {
@@ -66,19 +67,25 @@ TEST_F(RasterFile, a_small_cog_is_one_tile_no_larger_than_it_needs_and_valid) {
     write_cog(scratch / "small.tif", raster, {"z", "m", {}});
     test::expect_valid_cog(scratch / "small.tif");
     EXPECT_TRUE(identical(read_raster(scratch / "small.tif"), raster));
-    return test::output_of("gdalinfo '" + (scratch / "small.tif").string() + "'");
+    return test::output_of("gdalinfo '" + file("small.tif") + "'");
   };
   for (const auto& [columns, rows, side] : {std::array{3, 2, 128}, {201, 201, 208}, {130, 500, 512}}) {
     const std::string info = info_of(columns, rows);
-    EXPECT_TRUE(test::holds(info, {fmt::format("Block={0}x{0}", side)}));
-    EXPECT_FALSE(test::holds(info, {"Overviews"}));
+    EXPECT_TRUE(holds(info, {fmt::format("Block={0}x{0}", side)}));
+    EXPECT_FALSE(holds(info, {"Overviews"}));
   }
 }
 
-TEST_F(RasterFile, local_coordinates_stay_local) {
-  const Raster raster = random_raster({3, 2, -1, -2, 0.5, ""}, 2);
-  write_cog(scratch / "a.tif", raster, {"z", "m", {}});
+TEST_F(RasterFile, local_coordinates_stay_local_and_a_raster_stored_south_first_reads_the_same) {
+  const Raster local = random_raster({3, 2, -1, -2, 0.5, ""}, 2);
+  write_cog(scratch / "a.tif", local, {"z", "m", {}});
   EXPECT_EQ(read_raster(scratch / "a.tif").grid.crs_wkt, "");
+  const Raster raster = random_raster({4, 3, 100, 200, 10, epsg(32611)}, 4);
+  write_geotiff(scratch / "north.tif", raster, {"z", "m", {}});
+  const auto vrt = scratch.write("south.vrt", test::south_first_vrt("north.tif", raster.grid));
+  const Raster back = read_raster(vrt);
+  EXPECT_EQ(back.grid.south, 200);
+  EXPECT_EQ(back.values, raster.values);
 }
 
 TEST_F(RasterFile, a_large_map_gets_overviews_and_says_what_it_is) {
@@ -86,9 +93,9 @@ TEST_F(RasterFile, a_large_map_gets_overviews_and_says_what_it_is) {
   write_cog(scratch / "a.tif", raster, {"deposit thickness, vertical [m]", "m", {{"THICKNESS", "vertical"}}});
   shell("gdalinfo a.tif");
   const std::string info = test::text_of(scratch / "log.txt");
-  EXPECT_TRUE(test::holds(
-      info, {"LAYOUT=COG", "COMPRESSION=DEFLATE", "Overviews: 550x350", "NoData Value=-9999", "Type=Float64",
-             "Description = deposit thickness, vertical [m]", "Unit Type: m", "THICKNESS=vertical"}));
+  EXPECT_TRUE(
+      holds(info, {"LAYOUT=COG", "COMPRESSION=DEFLATE", "Overviews: 550x350", "NoData Value=-9999", "Type=Float64",
+                   "Description = deposit thickness, vertical [m]", "Unit Type: m", "THICKNESS=vertical"}));
   EXPECT_TRUE(identical(read_raster(scratch / "a.tif"), raster));
 }
 
@@ -106,35 +113,22 @@ TEST_F(RasterFile, row_zero_is_the_southernmost) {
   EXPECT_TRUE(std::isnan(raster.at(1, 1)));
 }
 
-TEST_F(RasterFile, a_raster_stored_south_first_reads_the_same) {
-  const Raster raster = random_raster({4, 3, 100, 200, 10, epsg(32611)}, 4);
-  write_geotiff(scratch / "north.tif", raster, {"z", "m", {}});
-  const auto vrt = scratch.write("south.vrt", test::south_first_vrt("north.tif", raster.grid));
-  const Raster back = read_raster(vrt);
-  EXPECT_EQ(back.grid.south, 200);
-  EXPECT_EQ(back.values, raster.values);
-}
-
 TEST_F(RasterFile, undeclared_nodata_values_are_dropped_with_a_warning) {
   testing::internal::CaptureStderr();
   const Raster raster = read_raster(ascii("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 4", "-9999 7\n"));
-  EXPECT_TRUE(test::holds(testing::internal::GetCapturedStderr(), {"dem.asc: 1 cell holds -9999 or the like"}));
+  EXPECT_TRUE(holds(testing::internal::GetCapturedStderr(), {"dem.asc: 1 cell holds -9999 or the like"}));
   EXPECT_TRUE(std::isnan(raster.at(0, 0)));
   EXPECT_EQ(raster.at(1, 0), 7);
 }
 
-TEST_F(RasterFile, scale_and_offset_are_applied) {
+TEST_F(RasterFile, scale_offset_and_single_precision_nodata_are_applied) {
   write_geotiff(scratch / "a.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {10, std::nan("")}), {"z", "m", {}});
   shell("gdal_translate -a_scale 0.5 -a_offset 100 a.tif b.tif");
   const Raster raster = read_raster(scratch / "b.tif");
   EXPECT_EQ(raster.at(0, 0), 105);
   EXPECT_TRUE(std::isnan(raster.at(1, 0)));
-}
-
-TEST_F(RasterFile, single_precision_nodata_is_recognised) {
-  write_geotiff(scratch / "a.tif", small_raster({2, 1, 0, 0, 1, epsg(32611)}, {10, std::nan("")}), {"z", "m", {}});
-  shell("gdalwarp -ot Float32 -dstnodata -3.4028234663852886e+38 a.tif b.tif");
-  EXPECT_TRUE(std::isnan(read_raster(scratch / "b.tif").at(1, 0)));
+  shell("gdalwarp -ot Float32 -dstnodata -3.4028234663852886e+38 a.tif e.tif");
+  EXPECT_TRUE(std::isnan(read_raster(scratch / "e.tif").at(1, 0)));
   shell(
       "gdal_translate -ot Float32 -a_nodata -9999.9 a.tif c.tif && gdalwarp -ot Float32 -dstnodata -9999.9 a.tif "
       "d.tif");
@@ -158,8 +152,7 @@ TEST_F(RasterFile, reading_leaves_nothing_beside_the_file) {
 }
 
 TEST_F(RasterFile, refuses_a_missing_file) {
-  EXPECT_EQ(fault(scratch / "none.tif"),
-            (scratch / "none.tif").string() + ": no such file. Check the path in the recipe");
+  EXPECT_EQ(fault("none.tif"), "./none.tif: no such file. Check the path in the recipe");
 }
 
 TEST_F(RasterFile, refuses_what_is_no_raster) {
@@ -167,114 +160,77 @@ TEST_F(RasterFile, refuses_what_is_no_raster) {
   testing::internal::CaptureStderr();
   const std::string text = fault(file);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // GDAL itself must stay quiet
-  EXPECT_TRUE(text.starts_with(file.string() + ": not a raster that can be read (")) << text;
-  EXPECT_TRUE(text.ends_with(". Look at it: gdalinfo " + file.string())) << text;
+  EXPECT_TRUE(begins(text, "./notes.tif: not a raster that can be read ("));
+  EXPECT_TRUE(text.ends_with(". Look at it: gdalinfo ./notes.tif")) << text;
 }
 
-TEST_F(RasterFile, refuses_degrees_with_the_command_that_mends_it) {
+TEST_F(RasterFile, refuses_degrees_and_feet_with_the_command_that_mends_them) {
   write_geotiff(scratch / "d.tif", random_raster({40, 40, -114.4, 49.5, 0.001, epsg(4326)}, 5), {"z", "m", {}});
-  const std::string file = (scratch / "d.tif").string();
-  const std::string text = fault(file);
-  EXPECT_EQ(text, file +
-                      ": CRS is EPSG:4326, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:32611 "
-                      "-r bilinear " +
-                      file + " d_utm.tif");
+  const std::string text = fault("d.tif");
+  EXPECT_EQ(text,
+            "./d.tif: CRS is EPSG:4326, in degrees (this stage needs metres). Reproject: gdalwarp -t_srs EPSG:32611 -r "
+            "bilinear ./d.tif d_utm.tif");
   EXPECT_EQ(crs_name(mended(text, "d_utm.tif").grid.crs_wkt), "EPSG:32611");
-}
-
-TEST_F(RasterFile, refuses_feet_with_the_command_that_mends_it) {
   write_geotiff(scratch / "f.tif", random_raster({20, 20, 6000000, 2000000, 30, epsg(2227)}, 6), {"z", "m", {}});
-  const std::string file = (scratch / "f.tif").string();
-  const std::string text = fault(file);
-  EXPECT_EQ(text, file +
-                      ": CRS is EPSG:2227, in US survey foot (this stage needs metres). Reproject: gdalwarp -t_srs "
-                      "EPSG:32610 -r bilinear " +
-                      file + " f_utm.tif");
-  EXPECT_EQ(crs_name(mended(text, "f_utm.tif").grid.crs_wkt), "EPSG:32610");
+  const std::string feet = fault("f.tif");
+  EXPECT_EQ(feet,
+            "./f.tif: CRS is EPSG:2227, in US survey foot (this stage needs metres). Reproject: gdalwarp -t_srs "
+            "EPSG:32610 -r bilinear ./f.tif f_utm.tif");
+  EXPECT_EQ(crs_name(mended(feet, "f_utm.tif").grid.crs_wkt), "EPSG:32610");
 }
 
-TEST_F(RasterFile, refuses_a_rotated_raster_with_the_command_that_mends_it) {
+TEST_F(RasterFile, refuses_rotated_rasters_and_cells_that_are_not_square_with_the_command_that_mends_them) {
   write_geotiff(scratch / "n.tif", random_raster({20, 20, 500000, 5500000, 10, epsg(32611)}, 7), {"z", "m", {}});
   shell(
       "gdal_translate -of VRT n.tif r.vrt && sed -i 's|<GeoTransform>.*</GeoTransform>|<GeoTransform>500000, 9, 3, "
       "5500200, 3, -9</GeoTransform>|' r.vrt");
-  const std::string file = (scratch / "r.vrt").string();
-  const std::string text = fault(file);
-  EXPECT_EQ(
-      text,
-      file +
-          ": rows and columns do not run east and north (this stage needs a raster that is not rotated or mirrored). "
-          "Turn it: gdalwarp -r bilinear " +
-          file + " r_north_up.tif");
+  const std::string text = fault("r.vrt");
+  EXPECT_EQ(text,
+            "./r.vrt: rows and columns do not run east and north (this stage needs a raster that is not rotated or "
+            "mirrored). Turn it: gdalwarp -r bilinear ./r.vrt r_north_up.tif");
   EXPECT_GT(mended(text, "r_north_up.tif").grid.columns, 20);
-}
-
-TEST_F(RasterFile, refuses_cells_that_are_not_square_with_the_command_that_mends_it) {
-  write_geotiff(scratch / "n.tif", random_raster({20, 20, 500000, 5500000, 10, epsg(32611)}, 8), {"z", "m", {}});
   shell("gdal_translate -a_ullr 500000 5500200 500400 5500000 n.tif w.tif");
-  const std::string file = (scratch / "w.tif").string();
-  const std::string text = fault(file);
-  EXPECT_EQ(text, file +
-                      ": cells are 20 x 10 (this stage needs square cells). Resample: gdalwarp -tr 10 10 -r bilinear " +
-                      file + " w_square.tif");
-  EXPECT_EQ(mended(text, "w_square.tif").grid.columns, 40);
+  const std::string oblong = fault("w.tif");
+  EXPECT_EQ(oblong,
+            "./w.tif: cells are 20 x 10 (this stage needs square cells). Resample: gdalwarp -tr 10 10 -r bilinear "
+            "./w.tif w_square.tif");
+  EXPECT_EQ(mended(oblong, "w_square.tif").grid.columns, 40);
 }
 
-TEST_F(RasterFile, refuses_a_raster_without_a_place) {
+TEST_F(RasterFile, refuses_rasters_without_a_place_or_any_value) {
   shell("gdal_create -of GTiff -outsize 4 4 -bands 1 -ot Float32 -burn 7 p.tif");
-  const std::string file = (scratch / "p.tif").string();
-  EXPECT_EQ(fault(file),
-            file +
-                ": has no georeference (where its cells lie is not known). Give its edges: gdal_translate -a_ullr WEST "
-                "NORTH EAST SOUTH " +
-                file + " p_placed.tif");
+  EXPECT_EQ(fault("p.tif"),
+            "./p.tif: has no georeference (where its cells lie is not known). Give its edges: gdal_translate -a_ullr "
+            "WEST NORTH EAST SOUTH ./p.tif p_placed.tif");
+  ascii("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 4\nNODATA_value -9999", "-9999 -9999\n-9999 -9999\n");
+  EXPECT_EQ(fault("dem.asc"),
+            "./dem.asc: no cell holds a value (all 2 x 2 cells are nodata). Check the file and its nodata value: "
+            "gdalinfo -stats ./dem.asc");
 }
 
-TEST_F(RasterFile, refuses_a_raster_without_any_value) {
-  const auto file =
-      ascii("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 4\nNODATA_value -9999", "-9999 -9999\n-9999 -9999\n")
-          .string();
-  EXPECT_EQ(fault(file), file +
-                             ": no cell holds a value (all 2 x 2 cells are nodata). Check the file and its nodata "
-                             "value: gdalinfo -stats " +
-                             file);
-}
-
-TEST_F(RasterFile, refuses_infinite_values_by_place) {
+TEST_F(RasterFile, refuses_infinite_values_by_place_and_a_file_cut_short) {
   const double inf = std::numeric_limits<double>::infinity();
   write_geotiff(scratch / "i.tif", small_raster({2, 2, 100, 200, 10, epsg(32611)}, {1, 2, 3, inf}), {"z", "m", {}});
-  const std::string text = fault(scratch / "i.tif");
-  EXPECT_TRUE(text.starts_with((scratch / "i.tif").string() + ": column 2, line 1 (x 115.00, y 215.00) is infinite ("))
-      << text;
-}
-
-TEST_F(RasterFile, refuses_a_file_cut_short) {
+  EXPECT_TRUE(begins(fault("i.tif"), "./i.tif: column 2, line 1 (x 115.00, y 215.00) is infinite ("));
   write_geotiff(scratch / "t.tif", random_raster({200, 200, 0, 0, 10, epsg(32611)}, 9), {"z", "m", {}});
   std::filesystem::resize_file(scratch / "t.tif", std::filesystem::file_size(scratch / "t.tif") * 2 / 3);
-  const std::string text = fault(scratch / "t.tif");
-  EXPECT_FALSE(text.empty());
+  EXPECT_NE(fault("t.tif"), "");
 }
 
-TEST_F(RasterFile, a_full_disk_leaves_no_half_map) {
+TEST_F(RasterFile, a_full_disk_and_a_folder_that_is_not_there_are_faults_and_leave_no_half_map) {
   const Raster raster = random_raster({300, 300, 0, 0, 10, epsg(32611)}, 10);
   for (const auto& write : {write_cog, write_geotiff}) {
-    const std::string text = fault_of<DataError>([&] {
-      const test::SmallFiles limit(100000);
-      write(scratch / "a.tif", raster, {"z", "m", {}});
-    });
-    EXPECT_TRUE(text.starts_with((scratch / "a.tif").string() + ": cannot be written (")) << text;
+    const std::string text = full_disk_fault(100000, [&] { write(scratch / "a.tif", raster, {"z", "m", {}}); });
+    EXPECT_TRUE(begins(text, "./a.tif: cannot be written ("));
     EXPECT_EQ(scratch.files(), 0u);
   }
-}
-
-TEST_F(RasterFile, a_folder_that_is_not_there_is_a_fault) {
-  const std::string text = fault_of<DataError>([] {
+  const std::string gone = data_fault([] {
     write_cog("/no/such/a.tif", random_raster({2, 2, 0, 0, 1, ""}, 11), {"z", "m", {}});
   });
-  EXPECT_TRUE(text.starts_with("/no/such/a.tif: cannot be written (")) << text;
+  EXPECT_TRUE(begins(gone, "/no/such/a.tif: cannot be written ("));
 }
 
-TEST(Crs, the_same_system_is_recognised_in_other_words) {
+TEST(Crs, the_same_system_is_recognised_in_other_words_and_names_are_short) {
   EXPECT_TRUE(same_crs("", ""));
   EXPECT_FALSE(same_crs("", epsg(32611)));
   EXPECT_TRUE(same_crs(epsg(32611), epsg(32611)));
@@ -286,21 +242,8 @@ TEST(Crs, the_same_system_is_recognised_in_other_words) {
       R"(PARAMETER["False_Easting",500000.0],PARAMETER["False_Northing",0.0],PARAMETER["Central_Meridian",-117.0],)"
       R"(PARAMETER["Scale_Factor",0.9996],PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]])";
   EXPECT_TRUE(same_crs(esri, epsg(32611)));
-}
-
-TEST(Crs, names_are_short) {
   EXPECT_EQ(crs_name(""), "local metric coordinates");
   EXPECT_EQ(crs_name(epsg(32149)), "EPSG:32149");
-}
-
-/// What of a raster lies in a window.
-Raster part_of(const Raster& whole, int column, int row, int columns, int rows) {
-  Raster part{{columns, rows, whole.grid.west + column * whole.grid.cell, whole.grid.south + row * whole.grid.cell,
-               whole.grid.cell, whole.grid.crs_wkt},
-              {}};
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) part.values.push_back(whole.at(column + c, row + r));
-  return part;
 }
 
 TEST(RasterWriter, blocks_make_the_raster) {
@@ -308,9 +251,9 @@ TEST(RasterWriter, blocks_make_the_raster) {
   Raster whole = test::random_raster({70, 50, 4e5, 5e6, 2.5, test::epsg(32633)}, 3);
   whole.at(3, 4) = std::nan("");
   RasterWriter writer(scratch / "a.tif", whole.grid, {"something [m]", "m", {{"SOURCE", "test"}}});
-  writer.write(part_of(whole, 0, 0, 40, 50));
-  writer.write(part_of(whole, 40, 0, 30, 20));
-  writer.write(part_of(whole, 40, 20, 30, 30));
+  writer.write(cut(whole, {0, 0, 40, 50}));
+  writer.write(cut(whole, {40, 0, 30, 20}));
+  writer.write(cut(whole, {40, 20, 30, 30}));
   EXPECT_FALSE(std::filesystem::exists(scratch / "a.tif")) << "it has its name before it is whole";
   writer.set_item("LATER", "7");
   writer.finish();
@@ -318,13 +261,11 @@ TEST(RasterWriter, blocks_make_the_raster) {
   ASSERT_EQ(read.values.size(), whole.values.size());
   EXPECT_EQ(crs_name(read.grid.crs_wkt), "EPSG:32633");
   EXPECT_EQ(read.grid.west, whole.grid.west);
-  for (std::size_t i = 0; i < read.values.size(); ++i) {
-    if (std::isnan(whole.values[i])) {
+  for (std::size_t i = 0; i < read.values.size(); ++i)
+    if (std::isnan(whole.values[i]))
       EXPECT_TRUE(std::isnan(read.values[i]));
-    } else {
+    else
       EXPECT_EQ(read.values[i], static_cast<double>(static_cast<float>(whole.values[i])));
-    }
-  }
 }
 
 TEST(RasterWriter, refuses_a_part_that_lies_outside_and_a_folder_that_is_not_there) {

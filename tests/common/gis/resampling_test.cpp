@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <numbers>
+
+#include "common/gis/crs.hpp"
 #include "common/gis/resampling.hpp"
 #include "tests/common/rasters.hpp"
-#include "tests/common/scratch.hpp"
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus {
@@ -12,18 +15,52 @@ using test::epsg;
 using test::random_raster;
 using test::volume;
 
+/// Plate carree: true along meridians, too long along parallels.
+TEST(ground_scale, of_utm_is_its_factor_on_the_central_meridian_and_axes_are_told_apart) {
+  const auto scale = ground_scale_at(crs_by_name("EPSG:32633"), 500000, 5100000);
+  ASSERT_TRUE(scale.has_value());
+  EXPECT_NEAR(scale->x, 0.9996, 1e-7);  // the definition of UTM
+  EXPECT_NEAR(scale->y, 0.9996, 1e-7);
+  EXPECT_NEAR(scale->area, 0.9996 * 0.9996, 1e-7);
+  const auto plate = ground_scale_at(crs_by_name("EPSG:32662"), 1000000, 5000000);
+  if (!plate) GTEST_SKIP() << "this PROJ does not know EPSG:32662";
+  EXPECT_NEAR(plate->y, 1, 0.01);
+  EXPECT_GT(plate->x, 1.3);
+}
+
+/// Web Mercator at latitude p: a / (N cos p) along the parallel and a / M along the meridian times sec p, with the
+/// radii of curvature N and M (Snyder 1987).
+TEST(ground_scale, of_web_mercator_is_that_of_its_latitude) {
+  const double a = 6378137, y = 5012341, latitude = 2 * std::atan(std::exp(y / a)) - std::numbers::pi / 2;
+  const double e2 = 0.00669437999014, w = 1 - e2 * std::pow(std::sin(latitude), 2);
+  const auto scale = ground_scale_at(crs_by_name("EPSG:3857"), -8000000, y);
+  ASSERT_TRUE(scale.has_value());
+  EXPECT_NEAR(scale->x, std::sqrt(w) / std::cos(latitude), 1e-8);
+  EXPECT_NEAR(scale->y, std::pow(w, 1.5) / (1 - e2) / std::cos(latitude), 1e-8);
+  EXPECT_NEAR(scale->area, 1.74, 0.03) << "at 41 degrees";
+}
+
+TEST(ground_scale, of_a_grid_is_worst_where_it_is_worst) {
+  const MapGrid wide{
+      .columns = 1000, .rows = 10, .west = 200000, .south = 100000, .cell = 600, .crs_wkt = crs_by_name("EPSG:32633")};
+  const auto scale = grid_scale(wide);
+  ASSERT_TRUE(scale.has_value());
+  EXPECT_NEAR(scale->middle.x, 0.9996, 1e-6);
+  EXPECT_GT(scale->worst.falsity(), 0.0006) << "300 km from the central meridian";
+  EXPECT_FALSE(grid_scale(MapGrid{.columns = 9, .rows = 9, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""}));
+}
+
 Raster plane(const MapGrid& grid) {
   return test::raster_of(grid, [](double x, double y) { return 3 * x - 2 * y + 7; });
 }
 
 TEST(ResampleThickness, keeps_the_volume_on_random_grids) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   std::uniform_real_distribution<double> unit(0, 1);
   for (int trial = 0; trial < 50; ++trial) {
     const Raster source =
         random_raster({20 + trial, 30, 5e5 * unit(random), 5e6 * unit(random), 0.5 + 20 * unit(random), ""},
-                      seed + static_cast<unsigned>(trial));
+                      random.number + static_cast<unsigned>(trial));
     const MapGrid& from = source.grid;
     const double cell = 0.3 + 30 * unit(random);
     // A target that covers the source whole, at any registration.
@@ -69,19 +106,22 @@ TEST(ResampleThickness, refuses_another_crs) {
   const std::string text = test::fault_of<DataError>([] {
     resample_thickness(random_raster({2, 2, 0, 0, 1, epsg(32611)}, 3), {2, 2, 0, 0, 1, epsg(32612)});
   });
-  EXPECT_EQ(
-      text,
-      "a thickness in EPSG:32611 is wanted in EPSG:32612 (its volume would not survive a change of CRS). Bring the "
-      "elevations to the thickness's CRS, with working_crs in the recipe");
+  EXPECT_EQ(text,
+            "a thickness in EPSG:32611 is wanted in EPSG:32612 (its volume would not survive a change of CRS). Bring "
+            "the elevations to the thickness's CRS, with working_crs in the recipe");
 }
 
-TEST(ResampleElevation, copies_where_the_cells_are_the_same) {
+TEST(ResampleElevation, copies_where_the_cells_are_the_same_and_takes_the_area_mean_of_cells_that_are_cut) {
   const Raster source = random_raster({10, 10, 1000, 2000, 10, ""}, 4);
   const Raster result = resample_elevation(source, {4, 4, 1080, 1970, 10, ""});
   EXPECT_EQ(result.at(0, 3), source.at(8, 0));
   EXPECT_EQ(result.at(1, 3), source.at(9, 0));
   EXPECT_TRUE(std::isnan(result.at(2, 3)));
   EXPECT_TRUE(std::isnan(result.at(0, 2)));
+  const Raster three = test::small_raster({3, 3, 0, 0, 10, ""}, {1, 2, 6, 1, 2, 6, 1, 2, 6});
+  const Raster mean = resample_elevation(three, {2, 2, 0, 0, 15, ""});
+  EXPECT_NEAR(mean.at(0, 0), (1 * 10 + 2 * 5) / 15.0, 1e-12);
+  EXPECT_NEAR(mean.at(1, 1), (2 * 5 + 6 * 10) / 15.0, 1e-12);
 }
 
 TEST(ResampleElevation, reproduces_a_plane_on_finer_and_coarser_grids) {
@@ -93,13 +133,6 @@ TEST(ResampleElevation, reproduces_a_plane_on_finer_and_coarser_grids) {
     for (std::size_t i = 0; i < exact.values.size(); ++i)
       EXPECT_NEAR(result.values[i], exact.values[i], 1e-9) << "cell " << grid.cell;
   }
-}
-
-TEST(ResampleElevation, takes_the_area_mean_of_cells_that_are_cut) {
-  const Raster source = test::small_raster({3, 3, 0, 0, 10, ""}, {1, 2, 6, 1, 2, 6, 1, 2, 6});
-  const Raster result = resample_elevation(source, {2, 2, 0, 0, 15, ""});
-  EXPECT_NEAR(result.at(0, 0), (1 * 10 + 2 * 5) / 15.0, 1e-12);
-  EXPECT_NEAR(result.at(1, 1), (2 * 5 + 6 * 10) / 15.0, 1e-12);
 }
 
 TEST(ResampleElevation, keeps_holes_as_they_are) {
@@ -160,8 +193,7 @@ TEST(ResampleElevation, needs_a_crs_on_both_sides_or_on_none) {
   });
   EXPECT_EQ(text,
             "an elevation raster in local metric coordinates is wanted in EPSG:32611 (one of the two files names no "
-            "CRS). Give it "
-            "one: gdal_translate -a_srs EPSG:<code> in.tif out.tif");
+            "CRS). Give it one: gdal_translate -a_srs EPSG:<code> in.tif out.tif");
 }
 
 }  // namespace

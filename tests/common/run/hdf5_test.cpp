@@ -3,7 +3,6 @@
 // What the layer over HDF5 refuses: datasets of another kind or shape than asked for, and shapes without data.
 #include "common/run/hdf5.hpp"
 
-#include "common/run/check_values.hpp"
 #include "common/run/sealed_file.hpp"
 #include "common/stage/checksum.hpp"
 #include "tests/common/scratch.hpp"
@@ -11,8 +10,7 @@
 namespace talus {
 namespace {
 
-class Hdf5Reading : public ::testing::Test {
- protected:
+struct Hdf5Reading : test::InScratch {
   Hdf5Reading() {
     h5::File out = h5::File::create(path_, {path_, ""});
     out.write<double>("/reals", {2, 3}, std::vector<double>{0, 1, 2, 3, 4, 5});
@@ -44,8 +42,7 @@ class Hdf5Reading : public ::testing::Test {
     return text.empty() ? text : text.substr(path_.string().size());
   }
 
-  const test::Scratch scratch_;
-  const std::filesystem::path path_ = scratch_ / "file.h5";
+  const std::filesystem::path path_ = scratch / "file.h5";
 };
 
 TEST_F(Hdf5Reading, refuses_values_of_another_kind) {
@@ -92,7 +89,7 @@ TEST_F(Hdf5Reading, does_not_take_what_cannot_be_read_for_missing) {
   std::string bytes = test::text_of(path_);
   const std::size_t begin = 200;  // the root's own header is read as the file is opened
   std::fill(bytes.begin() + begin, bytes.end(), '\x5a');
-  scratch_.write("file.h5", bytes);
+  scratch.write("file.h5", bytes);
   EXPECT_NE(fault([](const h5::File& file) { file.exists("/group/reals"); }), "");
   EXPECT_NE(fault([](const h5::File& file) { file.exists("/group/others"); }), "");
   EXPECT_NE(fault([](const h5::File& file) { file.has_attribute("/group", "number 1"); }), "");
@@ -126,23 +123,15 @@ std::string sealed_fault(const h5::Format& written, bool sealed = true) {
   return fault.empty() ? fault : fault.substr(path.string().size());
 }
 
-TEST(SealedFile, of_the_known_mark_and_number_is_opened) { EXPECT_EQ(sealed_fault(known_format), ""); }
-
-TEST(SealedFile, of_another_mark_or_number_is_refused) {
+TEST(SealedFile, is_opened_with_the_known_mark_and_number_and_a_seal) {
+  EXPECT_EQ(sealed_fault(known_format), "");
   EXPECT_EQ(sealed_fault({"talus-other", "another"}), ": is not a test (its mark is missing). Make it again");
   EXPECT_EQ(sealed_fault({"talus-test", "a test", 4}), ": format 4 (this version reads 1). Make it again");
-}
-
-TEST(SealedFile, without_a_seal_is_refused) {
-  EXPECT_EQ(sealed_fault(known_format, false),
-            ": is damaged (its checksum is missing: another program wrote or changed it, or its end is lost). Make it "
-            "again");
-}
-
-TEST(SealedFile, that_is_missing_is_named) {
-  EXPECT_EQ(test::fault_of<DataError>([] {
-              h5::open_sealed("/no/such.h5", {"/no/such.h5", "Make it"});
-            }),
+  EXPECT_EQ(
+      sealed_fault(known_format, false),
+      ": is damaged (its checksum is missing: another program wrote or changed it, or its end is lost). Make it again");
+  const h5::Naming missing{"/no/such.h5", "Make it"};
+  EXPECT_EQ(test::fault_of<DataError>([&] { h5::open_sealed("/no/such.h5", missing); }),
             "/no/such.h5: no such file. Make it");
 }
 

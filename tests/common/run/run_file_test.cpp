@@ -1,24 +1,19 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // run.h5: what is written comes back, a foreign tool sees VTKHDF in it, and broken files are named as such.
-#include "common/run/run_file.hpp"
-
 #include <cmath>
-#include <limits>
 
+#include "common/run/mobility.hpp"
 #include "common/run/point_frames.hpp"
-#include "tests/common/damage.hpp"
-#include "tests/common/tools.hpp"
+#include "tests/postprocess/scene.hpp"
 
 namespace fs = std::filesystem;
 
 namespace talus {
 namespace {
 
-class RunFile : public ::testing::Test {
- protected:
-  test::Scratch scratch_;
-  const fs::path file_ = scratch_ / "run.h5";
+struct RunFile : test::InScratch {
+  const fs::path file_ = scratch / "run.h5";
 };
 
 PointFrame some_points(double time, std::size_t count) {
@@ -110,11 +105,8 @@ TEST_F(RunFile, brings_back_maps_frames_history_and_summary) {
   EXPECT_EQ(run.frames.thickness.at(1), maps.deposit_thickness);
   ASSERT_EQ(run.history.columns.size(), some_history.columns.size());
   for (std::size_t c = 0; c < some_history.columns.size(); ++c) {
-    EXPECT_EQ(run.history.columns[c].name, some_history.columns[c].name);
-    EXPECT_EQ(run.history.columns[c].values, some_history.columns[c].values);
-    EXPECT_EQ(run.history.columns[c].unit, some_history.columns[c].unit);
-    EXPECT_EQ(run.history.columns[c].quantity, some_history.columns[c].quantity);
-    EXPECT_EQ(run.history.columns[c].place, some_history.columns[c].place);
+    test::expect_same(run.history.columns[c], some_history.columns[c], &HistoryColumn::name, &HistoryColumn::values,
+                      &HistoryColumn::unit, &HistoryColumn::quantity, &HistoryColumn::place);
   }
   EXPECT_EQ(run.history.find("kinetic_J"), &run.history.columns[1]);
   EXPECT_EQ(run.history.find("potential_J"), nullptr);
@@ -138,24 +130,17 @@ TEST_F(RunFile, gives_its_points_back_frame_by_frame) {
   EXPECT_EQ(frames.all_points(), 9U);
   const PointFrame points = frames.read(1), expected = some_points(1.5, 4);
   EXPECT_EQ(points.time, 1.5);
-  EXPECT_EQ(points.position, expected.position);
-  EXPECT_EQ(points.velocity, expected.velocity);
-  EXPECT_EQ(points.volume, expected.volume);
-  EXPECT_EQ(points.pressure, expected.pressure);
-  EXPECT_EQ(points.id, expected.id);
-  EXPECT_EQ(points.release, expected.release);
+  using P = PointFrame;
+  test::expect_same(points, expected, &P::position, &P::velocity, &P::volume, &P::pressure, &P::id, &P::release);
 }
 
-TEST_F(RunFile, is_not_there_until_it_is_finished) {
+TEST_F(RunFile, is_not_there_until_it_is_finished_and_may_have_no_frames_or_points) {
   {
     RunWriter writer(file_);
     writer.append(some_points(0, 3));
     EXPECT_FALSE(fs::exists(file_));
   }
-  EXPECT_EQ(scratch_.files(), 0U) << "an abandoned run leaves nothing behind";
-}
-
-TEST_F(RunFile, reads_a_run_without_frames_or_points) {
+  EXPECT_EQ(scratch.files(), 0U) << "an abandoned run leaves nothing behind";
   RunWriter(file_).finish(some_maps(), {}, {});
   const auto run = read_run(file_);
   EXPECT_TRUE(run.frames.time.empty());
@@ -189,13 +174,17 @@ TEST_F(RunFile, holds_vtkhdf_as_h5dump_sees_it) {
   EXPECT_TRUE(test::holds(dump("Points"), {"( 9, 3 )"}));
 }
 
-TEST_F(RunFile, names_a_missing_file) { EXPECT_TRUE(test::holds(fault_of(file_).what, {"no such file"})); }
+TEST_F(RunFile, names_a_missing_file_and_refuses_one_that_is_something_else) {
+  EXPECT_TRUE(test::holds(fault_of(file_).what, {"no such file"}));
+  std::ofstream(file_) << "these are not the bytes of a run";
+  EXPECT_TRUE(test::holds(fault_of(file_).mend, {"talus-solve"}));
+}
 
 TEST_F(RunFile, refuses_a_truncated_file_at_any_length_and_says_how_to_mend_it) {
   write_some_run(file_);
   const auto size = fs::file_size(file_);
   for (const double part : {0.0, 0.001, 0.3, 0.7, 0.99}) {
-    const auto cut = scratch_ / "cut.h5";
+    const auto cut = scratch / "cut.h5";
     fs::copy_file(file_, cut, fs::copy_options::overwrite_existing);
     fs::resize_file(cut, static_cast<std::uintmax_t>(part * static_cast<double>(size)));
     const auto fault = fault_of(cut);
@@ -204,19 +193,15 @@ TEST_F(RunFile, refuses_a_truncated_file_at_any_length_and_says_how_to_mend_it) 
   }
 }
 
-TEST_F(RunFile, notices_a_changed_byte_before_hdf5_sees_it) {
+TEST_F(RunFile, notices_a_changed_byte_before_hdf5_sees_it_and_a_missing_seal) {
   write_some_run(file_);
   const std::string whole = test::text_of(file_);
   for (std::size_t place = 0; place < whole.size() - 128; place += 997) {
     std::string changed = whole;
     changed[place] = static_cast<char>(changed[place] ^ 0x40);
-    EXPECT_TRUE(fault_of(scratch_.write("changed.h5", changed)).why.starts_with("bytes have changed since")) << place;
+    EXPECT_TRUE(fault_of(scratch.write("changed.h5", changed)).why.starts_with("bytes have changed since")) << place;
   }
-}
-
-TEST_F(RunFile, refuses_a_run_whose_seal_is_gone) {
-  write_some_run(file_);
-  EXPECT_EQ(fault_of(scratch_.write("unsealed.h5", test::without_seal(file_))).why,
+  EXPECT_EQ(fault_of(scratch.write("unsealed.h5", test::without_seal(file_))).why,
             "its checksum is missing: another program wrote or changed it, or its end is lost");
 }
 
@@ -245,24 +230,101 @@ TEST_F(RunFile, refuses_numbers_that_cannot_be_with_their_place) {
   EXPECT_EQ(fault_with([](RunMaps& maps, auto&, auto&) { maps.grid.cell = 0; }), ": attribute /maps cell_m is 0");
 }
 
-TEST_F(RunFile, refuses_a_file_that_is_something_else) {
-  std::ofstream(file_) << "these are not the bytes of a run";
-  EXPECT_TRUE(test::holds(fault_of(file_).mend, {"talus-solve"}));
+TEST_F(RunFile, reports_a_write_that_the_system_refuses) {
+  const std::string fault = full_disk_fault(4096, [&] {
+    RunWriter writer(file_);
+    for (int i = 0; i < 20; ++i) writer.append(some_points(i, 20000));
+    writer.finish(some_maps(), some_history, some_summary());
+  });
+  EXPECT_TRUE(test::holds(fault, {"./run.h5: cannot be written"})) << "as the user knows it";
+  EXPECT_TRUE(test::holds(fault, {"File too large", "--out"}));
+  EXPECT_EQ(scratch.files(), 0U) << "nothing half-written may stay";
 }
 
-TEST_F(RunFile, reports_a_write_that_the_system_refuses) {
-  std::string fault;
-  {
-    const test::SmallFiles limit(4096);
-    fault = test::fault_of<DataError>([&] {
-      RunWriter writer(file_);
-      for (int i = 0; i < 20; ++i) writer.append(some_points(i, 20000));
-      writer.finish(some_maps(), some_history, some_summary());
-    });
+TEST(Mobility, finds_the_crown_on_the_surface_before_of_a_thin_release_too) {
+  const auto run = test::small_run();
+  const auto place = crown(run.maps, 1.0);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->x, run.maps.grid.x(3))
+      << "the slope falls to the east: the westernmost release column is the highest";
+  double highest = 0;
+  for (int row = 10; row < 20; ++row) highest = std::max(highest, run.maps.before[run.maps.grid.index(3, row)]);
+  EXPECT_EQ(place->z, highest);
+  auto thin = test::small_run();
+  for (double& h : thin.maps.initial_thickness) h *= 0.05;  // 0.3 m
+  EXPECT_TRUE(crown(thin.maps, 1.0));
+}
+
+TEST(Mobility, takes_the_middle_of_a_level_crown) {
+  auto run = test::small_run();
+  for (double& z : run.maps.before) z = 100;
+  for (int row = 0; row < run.maps.grid.rows; ++row)
+    for (int column = 0; column < run.maps.grid.columns; ++column)
+      run.maps.before[run.maps.grid.index(column, row)] -= column;
+  const auto place = crown(run.maps, 1.0);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->x, run.maps.grid.x(3));
+  EXPECT_NEAR(place->y, (run.maps.grid.y(10) + run.maps.grid.y(19)) / 2, 0.51 * run.maps.grid.cell);
+}
+
+TEST(Mobility, measures_to_the_farthest_cell_above_the_threshold_and_weighs_the_centre_of_mass_by_thickness) {
+  const MapGrid grid{.columns = 5, .rows = 1, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  const std::vector<double> thickness{0, 3, 2, 0.5, 0}, surface{50, 40, 30, 20, 10};
+  const auto toe = farthest(grid, thickness, 1, {5, 5, 50}, surface);
+  ASSERT_TRUE(toe);
+  EXPECT_EQ(toe->x, 25);
+  EXPECT_EQ(toe->z, 30);
+  EXPECT_EQ(plan_distance({5, 5, 50}, *toe), 20);
+  EXPECT_FALSE(farthest(grid, thickness, 4, {5, 5, 50}, surface));
+  const MapGrid three{.columns = 3, .rows = 1, .west = 0, .south = 0, .cell = 10, .crs_wkt = ""};
+  const auto centre = centre_of_mass(three, {1, nan, 3}, {100, 100, 200});
+  ASSERT_TRUE(centre);
+  EXPECT_DOUBLE_EQ(centre->x, (5.0 + 3 * 25) / 4);
+  EXPECT_DOUBLE_EQ(centre->y, 5);
+  EXPECT_DOUBLE_EQ(centre->z, (100.5 + 3 * 201.5) / 4);
+  EXPECT_FALSE(centre_of_mass(three, {0, 0, 0}, {}));
+}
+
+PointFrame points(double time, const std::vector<std::array<float, 3>>& velocities) {
+  PointFrame frame;
+  frame.time = time;
+  for (const auto& velocity : velocities) {
+    frame.velocity.push_back(velocity);
+    frame.position.push_back({0, 0, 0});
+    frame.volume.push_back(2.0F * static_cast<float>(frame.volume.size() + 1));
+    frame.pressure.push_back(0);
+    frame.id.push_back(0);
+    frame.release.push_back(0);
   }
-  EXPECT_TRUE(test::holds(fault, {file_.string() + ": cannot be written"})) << "as the user knows it";
-  EXPECT_TRUE(test::holds(fault, {"File too large", "--out"}));
-  EXPECT_EQ(scratch_.files(), 0U) << "nothing half-written may stay";
+  return frame;
+}
+
+RunMaps one_cell() {
+  RunMaps maps;
+  maps.grid = {.columns = 1, .rows = 1, .west = 0, .south = 0, .cell = 1, .crs_wkt = ""};
+  for (const auto field :
+       {&RunMaps::terrain, &RunMaps::before, &RunMaps::initial_thickness, &RunMaps::deposit_thickness,
+        &RunMaps::peak_thickness, &RunMaps::peak_speed, &RunMaps::peak_pressure_kPa, &RunMaps::arrival_time})
+    maps.*field = {0};
+  return maps;
+}
+
+using Motion = test::InScratch;
+
+TEST_F(Motion, counts_the_volume_of_points_faster_than_a_speed_and_is_empty_without_points) {
+  RunWriter writer(scratch / "run.h5");
+  writer.append(points(0, {{0, 0, 0}, {0, 0, 0}}));
+  writer.append(points(2, {{3, 4, 0}, {0, 0.9F, 0}, {0, 0, -2}}));  // volumes 2, 4, 6; a point has come in
+  writer.append(points(4, {}));
+  writer.finish(one_cell(), {}, {});
+  const auto motion = read_motion(scratch / "run.h5", 1);
+  EXPECT_EQ(motion.time, (std::vector<double>{0, 2, 4}));
+  EXPECT_EQ(motion.volume, (std::vector<double>{0, 8, 0}));
+  EXPECT_EQ(motion.mean_speed, (std::vector<double>{0, (5.0 * 2 + 2.0 * 6) / 8, 0}));
+  RunWriter bare(scratch / "bare.h5");
+  bare.append_thickness(0, one_cell().grid, {0});
+  bare.finish(one_cell(), {}, {});
+  EXPECT_TRUE(read_motion(scratch / "bare.h5", 1).time.empty());
 }
 
 }  // namespace

@@ -5,13 +5,14 @@
 #include <signal.h>
 
 #include "common/stage/context.hpp"
-#include "common/stage/output_lock.hpp"
+#include "common/stage/files.hpp"
 #include "tests/common/sample_options.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus {
 namespace {
 
+using test::holds;
 using test::SampleOptions;
 using test::Scratch;
 using test::text_of;
@@ -72,7 +73,7 @@ struct RunStage : testing::Test {
   std::string recipe() { return scratch.write("r.toml", "").string(); }
 };
 
-TEST_F(RunStage, prints_result_paths_alone_on_stdout) {
+TEST_F(RunStage, prints_result_paths_alone_on_stdout_and_none_after_a_fault) {
   stage.run = [](StageContext& context) {
     log_info("a fact");
     write_text(context.out / "a.txt", "x");
@@ -81,6 +82,12 @@ TEST_F(RunStage, prints_result_paths_alone_on_stdout) {
   EXPECT_EQ(run({recipe()}), 0);
   EXPECT_EQ(out, (scratch / "out/a.txt").string() + "\n");
   EXPECT_EQ(err, "a fact\n");
+  stage.run = [](StageContext& context) {
+    context.results = {"a.txt"};
+    throw DataError(Fault{"late", "", ""});
+  };
+  EXPECT_EQ(run({recipe()}), 3);
+  EXPECT_EQ(out, "");
 }
 
 TEST_F(RunStage, hands_over_what_the_command_line_says) {
@@ -115,36 +122,44 @@ TEST_F(RunStage, sets_only_the_flags_that_are_given) {
   EXPECT_TRUE(profile);
 }
 
-TEST_F(RunStage, a_flag_that_writes_nothing_makes_no_output_folder) {
+TEST_F(RunStage, check_and_a_flag_that_writes_nothing_make_no_output_folder) {
   EXPECT_EQ(run({recipe(), "--plan", "--out", (scratch / "new").string()}), 0) << err;
   EXPECT_FALSE(std::filesystem::exists(scratch / "new"));
   EXPECT_EQ(run({recipe(), "--profile", "--out", (scratch / "new").string()}), 0) << err;
   EXPECT_TRUE(std::filesystem::exists(scratch / "new"));
+  stage.run = [&](StageContext& context) { EXPECT_TRUE(context.check_only); };
+  EXPECT_EQ(run({recipe(), "--check", "--out", (scratch / "newer").string()}), 0) << err;
+  EXPECT_FALSE(std::filesystem::exists(scratch / "newer"));
 }
 
 TEST_F(RunStage, a_stage_without_kernels_takes_on_and_passes_it_over) {
   stage.flags.clear();
   EXPECT_EQ(run({recipe(), "--on", "gpu"}), 0) << err;
   EXPECT_EQ(run({recipe(), "--on", "tpu"}), 2);
-  EXPECT_TRUE(test::holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu}"}));
+  EXPECT_TRUE(holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu}"}));
   EXPECT_EQ(run({recipe(), "--restart"}), 2);
   EXPECT_EQ(run({"--help"}), 0);
-  EXPECT_TRUE(test::holds(out, {"This stage runs on the CPU whatever is asked"}));
+  EXPECT_TRUE(holds(out, {"This stage runs on the CPU whatever is asked"}));
 }
 
-TEST_F(RunStage, check_writes_nothing) {
-  stage.run = [&](StageContext& context) { EXPECT_TRUE(context.check_only); };
-  EXPECT_EQ(run({recipe(), "--check", "--out", (scratch / "new").string()}), 0) << err;
-  EXPECT_FALSE(std::filesystem::exists(scratch / "new"));
-}
-
-TEST_F(RunStage, names_in_messages_do_not_command_the_terminal) {
+TEST_F(RunStage, names_in_messages_do_not_command_the_terminal_quiet_says_nothing_and_verbose_more) {
   stage.run = [](StageContext&) {
     log_warning("release \x1b[2J\x07gone\r");
     throw DataError({"\x1b]0;owned\x07", "", ""});
   };
   EXPECT_EQ(run({recipe()}), 3);
   EXPECT_EQ(err, "warning: release ?[2J?gone?\ntalus-sample: ?]0;owned?\n");
+  stage.run = [](StageContext&) {
+    log_info("info");
+    log_warning("careful");
+    log_detail("detail");
+  };
+  run({recipe(), "-q"});
+  EXPECT_EQ(err, "");
+  run({recipe()});
+  EXPECT_EQ(err, "info\nwarning: careful\n");
+  run({recipe(), "-v"});
+  EXPECT_EQ(err, "info\nwarning: careful\ndetail\n");
 }
 
 TEST_F(RunStage, shows_paths_as_they_were_given) {
@@ -159,40 +174,29 @@ TEST_F(RunStage, shows_paths_as_they_were_given) {
   EXPECT_EQ(err, "results/run.h5 and a\n");
 }
 
-TEST_F(RunStage, no_recipe_is_a_usage_error) {
+TEST_F(RunStage, no_recipe_unknown_options_and_values_are_usage_errors) {
   EXPECT_EQ(run({}), 2);
   EXPECT_EQ(err,
             "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--set KEY=VALUE] "
-            "[--check] [--template] [--threads N] [--on "
-            "auto|cpu|gpu] [--restart [FILE]] [--profile] [--plan] [-v|-q] (all of it: talus-sample --help)\n");
+            "[--check] [--template] [--threads N] [--on auto|cpu|gpu] [--restart [FILE]] [--profile] [--plan] [-v|-q] "
+            "(all of it: talus-sample --help)\n");
   EXPECT_EQ(out, "");
-}
-
-TEST_F(RunStage, unknown_options_and_values_are_usage_errors) {
   EXPECT_EQ(run({recipe(), "--fast"}), 2);
-  EXPECT_TRUE(test::holds(err, {"talus-sample: The following argument was not expected: --fast. Usage: "}));
+  EXPECT_TRUE(holds(err, {"talus-sample: The following argument was not expected: --fast. Usage: "}));
   EXPECT_EQ(run({recipe(), "--on", "tpu"}), 2);
-  EXPECT_TRUE(test::holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu}"}));
+  EXPECT_TRUE(holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu}"}));
   EXPECT_EQ(run({recipe(), "-v", "-q"}), 2);
 }
 
-TEST_F(RunStage, template_needs_no_recipe_and_reads_back) {
+TEST_F(RunStage, template_help_and_version_need_no_recipe) {
   EXPECT_EQ(run({"--template"}), 0);
-  const recipe::Recipe back(scratch.write("t.toml", out));
-  EXPECT_EQ(back.read<SampleOptions>("solve"), SampleOptions{});
-}
-
-TEST_F(RunStage, help_names_examples_and_exit_codes) {
+  EXPECT_EQ(recipe::Recipe(scratch.write("t.toml", out)).read<SampleOptions>("solve"), SampleOptions{});
   EXPECT_EQ(run({"--help"}), 0);
-  EXPECT_TRUE(
-      test::holds(out, {"talus-sample r.toml", "Exit codes: 0 done", "--restart", "--on", "--template", "--check"}));
+  EXPECT_TRUE(holds(out, {"talus-sample r.toml", "Exit codes: 0 done", "--restart", "--on", "--template", "--check"}));
   EXPECT_EQ(err, "");
-}
-
-TEST_F(RunStage, version_names_the_commit) {
   EXPECT_EQ(run({"--version"}), 0);
   EXPECT_EQ(out, "talus-sample " + version() + "\n");
-  EXPECT_TRUE(test::holds(version(), {" ("}));
+  EXPECT_TRUE(holds(version(), {" ("}));
 }
 
 TEST_F(RunStage, refuses_an_output_folder_that_cannot_be_written_to) {
@@ -260,30 +264,7 @@ TEST_F(RunStage, takes_no_second_lock_of_a_folder_that_its_context_has_locked) {
   EXPECT_TRUE(own.has_locked(scratch.folder())) << "the lock is still its holder's";
 }
 
-TEST_F(RunStage, prints_no_results_after_a_fault) {
-  stage.run = [](StageContext& context) {
-    context.results = {"a.txt"};
-    throw DataError(Fault{"late", "", ""});
-  };
-  EXPECT_EQ(run({recipe()}), 3);
-  EXPECT_EQ(out, "");
-}
-
-TEST_F(RunStage, quiet_says_nothing_and_verbose_says_more) {
-  stage.run = [](StageContext&) {
-    log_info("info");
-    log_warning("careful");
-    log_detail("detail");
-  };
-  run({recipe(), "-q"});
-  EXPECT_EQ(err, "");
-  run({recipe()});
-  EXPECT_EQ(err, "info\nwarning: careful\n");
-  run({recipe(), "-v"});
-  EXPECT_EQ(err, "info\nwarning: careful\ndetail\n");
-}
-
-TEST_F(RunStage, ctrl_c_is_seen_by_the_stage_and_ends_with_130) {
+TEST_F(RunStage, ctrl_c_is_seen_by_the_stage_and_a_second_signal_ends_the_process_at_once) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   stage.run = [](StageContext&) {
     if (interrupted()) return;
@@ -293,16 +274,11 @@ TEST_F(RunStage, ctrl_c_is_seen_by_the_stage_and_ends_with_130) {
   const std::string file = recipe();
   EXPECT_EXIT(run_and_exit(file), testing::ExitedWithCode(130),
               "talus-sample: stopped at step 12 \\(Ctrl-C\\). Go on with --restart");
-}
-
-TEST_F(RunStage, a_second_signal_ends_the_process_at_once) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
   stage.run = [](StageContext&) {
     ::raise(SIGTERM);
     ::raise(SIGINT);
     std::_Exit(99);
   };
-  const std::string file = recipe();
   EXPECT_EXIT(run_and_exit(file), testing::ExitedWithCode(130), "");
 }
 
@@ -325,7 +301,7 @@ TEST_F(RunStage, used_recipe_reads_back_and_names_what_went_in) {
   EXPECT_EQ(back.scene_name(), "a");
   EXPECT_EQ(back.title(), "The \"A\"");
   const std::string text = text_of(used);
-  EXPECT_TRUE(test::holds(
+  EXPECT_TRUE(holds(
       text,
       {"# program: talus-sample " + version() + "\n", "# command: talus-sample " + file.string() + "\n",
        "# recipe: " + file.string() + "  sha256 " + sha256(file) + "\n",

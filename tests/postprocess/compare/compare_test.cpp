@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/compare/compare.hpp"
-#include "postprocess/report/filled_page.hpp"
+#include "postprocess/report/page.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
 namespace {
+
+using test::holds;
 
 TEST(CompareDeposits, of_a_run_with_itself_differ_by_nothing) {
   const talus::Run run = test::small_run();
@@ -89,13 +91,18 @@ ComparedRun run_called(const std::string& name) {
   return run;
 }
 
-TEST(CompareCurves, show_every_record_of_both_runs) {
+TEST(CompareCurves, show_every_record_of_both_runs_and_have_axes_of_few_round_steps) {
   const std::string page = history_charts(run_called("a <b>"), run_called("c"));
   EXPECT_EQ(count_of(page, "<polyline"), 2U);
-  EXPECT_FALSE(test::holds(page, {"<b>"})) << "a name is no markup";
+  EXPECT_FALSE(holds(page, {"<b>"})) << "a name is no markup";
   const auto at = page.find("points=\"") + 8;
   const std::string points = page.substr(at, page.find('"', at) - at);
   EXPECT_EQ(std::count(points.begin(), points.end(), ','), 3);
+  for (int n = 0; n < 66; ++n) {
+    const double range = 1e-3 * std::pow(1.7, n);  // to 1e12
+    EXPECT_GE(range / axis_step(range), 4 - 1e-9);
+    EXPECT_LE(range / axis_step(range), 10 + 1e-9);
+  }
 }
 
 TEST(CompareCurves, show_what_one_of_the_two_has_and_nothing_where_nothing_happened) {
@@ -104,19 +111,11 @@ TEST(CompareCurves, show_what_one_of_the_two_has_and_nothing_where_nothing_happe
   second.run.history.columns.push_back({"gauge_far_thickness_m", "m", "thickness", "gauge far", {0, 0, 0}});
   const std::string page = history_charts(first, second);
   EXPECT_EQ(count_of(page, "<polyline"), 3U);
-  EXPECT_TRUE(test::holds(page, {"gauge toe: thickness [m]"}));
-  EXPECT_FALSE(test::holds(page, {"gauge far"}));
+  EXPECT_TRUE(holds(page, {"gauge toe: thickness [m]"}));
+  EXPECT_FALSE(holds(page, {"gauge far"}));
   first.run.history.columns.clear();
   second.run.history.columns.clear();
   EXPECT_EQ(history_charts(first, second), "");
-}
-
-TEST(CompareCurves, have_axes_of_few_round_steps) {
-  for (int n = 0; n < 66; ++n) {
-    const double range = 1e-3 * std::pow(1.7, n);  // to 1e12
-    EXPECT_GE(range / axis_step(range), 4 - 1e-9);
-    EXPECT_LE(range / axis_step(range), 10 + 1e-9);
-  }
 }
 
 TEST(ComparePage, lets_no_style_in_but_its_own_and_takes_names_as_text) {
@@ -125,14 +124,14 @@ TEST(ComparePage, lets_no_style_in_but_its_own_and_takes_names_as_text) {
   first.run.summary.title = hostile;
   for (double& h : second.run.maps.deposit_thickness) h *= 1.5;  // so that there are classes with colours
   const std::string page = comparison_html(first, second, 0.1);
-  EXPECT_FALSE(test::holds(page, {"unsafe-"}));
-  EXPECT_FALSE(test::holds(page, {"style=\""})) << "no browser that heeds the policy takes it";
-  EXPECT_FALSE(test::holds(page, {"<img src=x"}));
+  EXPECT_FALSE(holds(page, {"unsafe-"}));
+  EXPECT_FALSE(holds(page, {"style=\""})) << "no browser that heeds the policy takes it";
+  EXPECT_FALSE(holds(page, {"<img src=x"}));
   const std::size_t begin = page.find("<style>") + 7, end = page.find("</style>");
   ASSERT_LT(begin, end);
   const std::string style = page.substr(begin, end - begin);
   EXPECT_TRUE(
-      test::holds(page, {"style-src " + policy_source(style) + "\"", "<rect width=\"100%\" height=\"100%\" fill=\"#"}));
+      holds(page, {"style-src " + policy_source(style) + "\"", "<rect width=\"100%\" height=\"100%\" fill=\"#"}));
 }
 
 }  // namespace

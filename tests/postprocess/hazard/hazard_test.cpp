@@ -37,7 +37,7 @@ std::vector<int> codes(const IntensityMap& map, const RunMaps& maps, int count) 
   return found;
 }
 
-TEST(Intensity, of_debris_flows_asks_for_thickness_and_speed) {
+TEST(Intensity, of_debris_flows_asks_for_thickness_and_speed_and_own_limits_take_any_or_all) {
   const RunMaps maps = cases({{0.05, 9, 9}, {0.2, 0.2, 0}, {3, 0.9, 0}, {0.9, 20, 0}, {1, 1, 0}});
   const IntensityMap map = intensity_of(maps, {.guideline = Guideline::swiss_debris_flow});
   EXPECT_EQ(codes(map, maps, 5), (std::vector<int>{0, 2, 2, 2, 3})) << "what is thinner than the threshold is none";
@@ -46,37 +46,28 @@ TEST(Intensity, of_debris_flows_asks_for_thickness_and_speed) {
   EXPECT_DOUBLE_EQ(map.classes[0].area, 300);
   EXPECT_DOUBLE_EQ(map.classes[1].area, 100);
   EXPECT_EQ(map.classes[1].words, "thickness \u2265 1 m and speed \u2265 1 m/s");
+  const RunMaps some = cases({{1, 1, 1}, {5, 1, 1}, {5, 10, 1}, {5, 30, 1}, {20, 30, 1}});
+  IntensityOptions own{.guideline = Guideline::own, .thickness = {2, 10}, .speed = {5, 20}};
+  EXPECT_EQ(codes(intensity_of(some, own), some, 5), (std::vector<int>{0, 1, 1, 2, 2}));
+  own.rule = Rule::all;
+  EXPECT_EQ(codes(intensity_of(some, own), some, 5), (std::vector<int>{0, 0, 1, 1, 2}));
 }
 
-TEST(Intensity, of_floods_takes_thickness_or_thickness_times_speed) {
-  const RunMaps maps = cases({{0.4, 1, 0}, {0.4, 1.3, 0}, {0.5, 0, 0}, {0.4, 6, 0}, {2, 0, 0}});
-  const IntensityMap map = intensity_of(maps, {.guideline = Guideline::swiss_flood});
-  EXPECT_EQ(codes(map, maps, 5), (std::vector<int>{1, 2, 2, 3, 3}));
-}
-
-TEST(Intensity, of_avalanches_is_by_pressure) {
-  const RunMaps maps = cases({{1, 1, 2.9}, {1, 1, 3}, {1, 1, 29.9}, {1, 1, 30}});
-  EXPECT_EQ(codes(intensity_of(maps, {.guideline = Guideline::swiss_avalanche}), maps, 4),
+TEST(Intensity, of_other_guidelines_is_by_product_or_pressure) {
+  const RunMaps floods = cases({{0.4, 1, 0}, {0.4, 1.3, 0}, {0.5, 0, 0}, {0.4, 6, 0}, {2, 0, 0}}),
+                avalanches = cases({{1, 1, 2.9}, {1, 1, 3}, {1, 1, 29.9}, {1, 1, 30}}),
+                on_buildings = cases({{1, 1, 14.9}, {1, 1, 15}, {1, 1, 30}, {1, 1, 35}, {1, 1, 100}});
+  EXPECT_EQ(codes(intensity_of(floods, {.guideline = Guideline::swiss_flood}), floods, 5),
+            (std::vector<int>{1, 2, 2, 3, 3}));
+  EXPECT_EQ(codes(intensity_of(avalanches, {.guideline = Guideline::swiss_avalanche}), avalanches, 4),
             (std::vector<int>{1, 2, 2, 3}));
-}
-
-TEST(Intensity, of_debris_flows_on_buildings_is_the_damage_seen_at_that_pressure) {
-  const RunMaps maps = cases({{1, 1, 14.9}, {1, 1, 15}, {1, 1, 30}, {1, 1, 35}, {1, 1, 100}});
-  const IntensityMap concrete = intensity_of(maps, {.guideline = Guideline::debris_flow_concrete}),
-                     other = intensity_of(maps, {.guideline = Guideline::debris_flow_other});
-  EXPECT_EQ(codes(concrete, maps, 5), (std::vector<int>{1, 1, 1, 2, 3}));
-  EXPECT_EQ(codes(other, maps, 5), (std::vector<int>{1, 2, 3, 3, 3}));
+  const IntensityMap concrete = intensity_of(on_buildings, {.guideline = Guideline::debris_flow_concrete}),
+                     other = intensity_of(on_buildings, {.guideline = Guideline::debris_flow_other});
+  EXPECT_EQ(codes(concrete, on_buildings, 5), (std::vector<int>{1, 1, 1, 2, 3}));
+  EXPECT_EQ(codes(other, on_buildings, 5), (std::vector<int>{1, 2, 3, 3, 3}));
   EXPECT_EQ(concrete.classes[2].name, "extensive damage");
   EXPECT_EQ(other.classes[2].words, "pressure \u2265 30 kPa");
   EXPECT_TRUE(test::holds(other.source, {"Kang & Kim (2014)"}));
-}
-
-TEST(Intensity, by_own_limits_takes_any_or_all) {
-  const RunMaps maps = cases({{1, 1, 1}, {5, 1, 1}, {5, 10, 1}, {5, 30, 1}, {20, 30, 1}});
-  IntensityOptions own{.guideline = Guideline::own, .thickness = {2, 10}, .speed = {5, 20}};
-  EXPECT_EQ(codes(intensity_of(maps, own), maps, 5), (std::vector<int>{0, 1, 1, 2, 2}));
-  own.rule = Rule::all;
-  EXPECT_EQ(codes(intensity_of(maps, own), maps, 5), (std::vector<int>{0, 0, 1, 1, 2}));
 }
 
 TEST(Intensity, refuses_limits_that_make_no_classes) {
@@ -216,7 +207,7 @@ TEST(Buildings, table_quotes_names_and_leaves_out_what_never_came) {
 
 TEST(ScoreOfHazard, has_a_percentile_beside_every_largest_value) {
   const auto run = test::small_run();
-  const Score score = make_score(run, {}, std::nullopt);
+  const Score score = make_score(run, {}, std::nullopt, thalweg_of(run, {}));
   int found = 0;
   for (const auto& section : score.sections)
     for (const auto& entry : section.entries) {

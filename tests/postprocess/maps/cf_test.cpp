@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The NetCDF file against the list of requirements of the CF conventions, and read by tools that know them.
-#include "postprocess/maps/cf_projection.hpp"
-#include "postprocess/maps/netcdf.hpp"
+#include <cmath>
+
+#include <netcdf.h>
+
+#include "postprocess/maps/maps.hpp"
+#include "postprocess/maps/nc_file.hpp"
 #include "postprocess/options/options.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/places.hpp"
@@ -11,7 +15,66 @@
 namespace talus::postprocess {
 namespace {
 
+using test::holds;
 using test::output_of;
+
+/// The content of a file: a map over time and texts, the second half of them in a group.
+struct Content {
+  std::vector<double> first = {1, -9999, std::nan(""), 4}, second = {5, 6, -0.0, 8};
+  std::vector<std::string> names = {"a", "", "long name"};
+  std::string unit = "m";
+  std::vector<double> list = {0.1, 2};
+  std::vector<int> whole = {-1, 7};
+
+  std::string bytes() const {
+    Nc nc("x.nc");
+    const int time = nc.dimension("time", 2), y = nc.dimension("y", 2), x = nc.dimension("x", 2);
+    const int map = nc.field("h", {time, y, x});
+    nc.text(map, "units", unit);
+    nc.integers(map, "counts", whole);
+    nc.enter_group("more");
+    const int member = nc.dimension("member", 3);
+    const int name = nc.variable("name", NC_STRING, {member});
+    nc.numbers(NC_GLOBAL, "list", list);
+    nc.end_definitions();
+    nc.put_texts(name, names);
+    nc.leave_group();
+    nc.put_map(map, 0, first);
+    nc.put_map(map, 1, second);
+    return nc.close();  // it reads back what it was given
+  }
+  NcRecord record() const {
+    NcRecord record;
+    record.values({"", "h"}, {0, 0, 0}, {1, 2, 2}, first);
+    record.values({"", "h"}, {1, 0, 0}, {1, 2, 2}, second);
+    record.texts({"more", "name"}, names);
+    record.text({"", "h"}, "units", unit);
+    record.numbers({"", "h"}, "counts", {whole.begin(), whole.end()});
+    record.numbers({"more", ""}, "list", list);
+    return record;
+  }
+};
+
+/// The difference of a file to the record of one with a change.
+template <class Change>
+std::string difference(const Change& change) {
+  const Content kept;
+  Content given;
+  change(given);
+  return given.record().difference(kept.bytes());
+}
+
+TEST(NcRecord, finds_no_difference_in_a_file_that_kept_all_and_names_what_was_kept_otherwise) {
+  const Content content;
+  EXPECT_EQ(content.record().difference(content.bytes()), "");
+  const std::string whole = content.bytes();
+  EXPECT_EQ(content.record().difference(whole.substr(0, 100)), "it does not open");
+  EXPECT_EQ(difference([](Content& c) { c.second[2] = 0; }), "the values of h");
+  EXPECT_EQ(difference([](Content& c) { c.names[1] = "b"; }), "the texts of name");
+  EXPECT_EQ(difference([](Content& c) { c.unit = "km"; }), "units of h");
+  EXPECT_EQ(difference([](Content& c) { c.whole.push_back(0); }), "counts of h");
+  EXPECT_EQ(difference([](Content& c) { c.list[0] += 1e-16; }), "list of more");
+}
 
 /// A run with all a file can hold: releases, erosion, frames.
 Run full_run(const std::string& crs, double west, double south) {
@@ -26,18 +89,16 @@ Run full_run(const std::string& crs, double west, double south) {
   return run;
 }
 
-class Cf : public ::testing::Test {
- protected:
+struct Cf : test::InScratch {
   /// Write a run; the file's name, quoted for the shell.
   std::string written(const talus::Run& run, const std::string& name) const {
-    write_netcdf(scratch_ / name, run, {"A test", "talus-postprocess x.toml", ""});
-    return " '" + (scratch_ / name).string() + "'";
+    write_netcdf(scratch / name, run, {"A test", "talus-postprocess x.toml", ""});
+    return " '" + (scratch / name).string() + "'";
   }
   static std::string checked(const std::string& files, const std::string& program = "check_cf.py") {
     return output_of("/usr/bin/python3 '" TALUS_SOURCE_DIR "/tests/postprocess/maps/" + program + "' " + files);
   }
-  test::Scratch scratch_;
-  const std::filesystem::path file_ = scratch_ / "results.nc";
+  const std::filesystem::path file_ = scratch / "results.nc";
 };
 
 #define TALUS_CF_CHECKER                                                                         \
@@ -73,12 +134,17 @@ TEST_F(Cf, is_checked_by_what_sees_every_break) {
   EXPECT_EQ(checked(written(full_run(test::epsg(32632), 600000, 5100000), "whole.nc"), "break_cf.py"), "no faults\n");
 }
 
-TEST_F(Cf, names_the_start_of_the_failure_where_it_is_known) {
+TEST_F(Cf, names_the_start_of_the_failure_and_gives_releases_names_that_netcdf_can_hold) {
   TALUS_NEED_TOOL("command -v ncdump", "netcdf-bin");
   write_netcdf(file_, test::small_run(), {"", "", "1903-04-29 04:10:00"});
   const auto header = output_of("ncdump -h '" + file_.string() + "'");
-  EXPECT_TRUE(test::holds(header, {"time:units = \"seconds since 1903-04-29 04:10:00\""}));
-  EXPECT_FALSE(test::holds(header, {"nominal"}));
+  EXPECT_TRUE(holds(header, {"time:units = \"seconds since 1903-04-29 04:10:00\""}));
+  EXPECT_FALSE(holds(header, {"nominal"}));
+  write_netcdf(file_, full_run(test::epsg(32632), 600000, 5100000), {});
+  EXPECT_TRUE(holds(
+      output_of("ncdump -h '" + file_.string() + "'"),
+      {"double deposit_thickness_upper_scar(y, x)", "double deposit_thickness_bed_2_5(y, x)",
+       "double deposit_thickness_bed_2_5_(y, x)", "double eroded_depth(y, x)", "end of release bed-2.5, vertical"}));
 }
 
 TEST(StartTime, is_a_date_or_refused) {
@@ -103,11 +169,10 @@ TEST_F(Cf, is_read_by_cdo_without_complaint) {
     const auto said = output_of("cdo -s " + std::string(verb) + " '" + file_.string() + "'", &code);
     EXPECT_EQ(code, 0) << said;
     for (const auto* complaint : {"arning", "rror", "nsupported", "nconsistent"})
-      EXPECT_FALSE(test::holds(said, {complaint}));
+      EXPECT_FALSE(holds(said, {complaint}));
   }
   const auto grid = output_of("cdo -s sinfo '" + file_.string() + "'");
-  EXPECT_TRUE(
-      test::holds(grid, {"projection", "transverse_mercator", "600005 to 600395 by 10", "1970-01-01 00:00:20"}));
+  EXPECT_TRUE(holds(grid, {"projection", "transverse_mercator", "600005 to 600395 by 10", "1970-01-01 00:00:20"}));
   const auto sum = output_of("cdo -s output -fldsum -selname,deposit_thickness '" + file_.string() + "'");
   EXPECT_NEAR(std::stod(sum) * 100, 24000, 1) << "the volume, as cdo sums it up: " << sum;
 }
@@ -116,19 +181,10 @@ TEST_F(Cf, lies_in_its_place_for_gdalinfo) {
   TALUS_NEED_TOOL("gdalinfo --format netCDF", "gdal-bin with the netCDF driver");
   write_netcdf(file_, full_run(test::epsg(32632), 600000, 5100000), {});
   const auto info = output_of("gdalinfo 'NETCDF:\"" + file_.string() + "\":deposit_thickness'");
-  EXPECT_TRUE(test::holds(info, {"Origin = (600000.000000000000000,5100300.000000000000000)",
-                                 "Pixel Size = (10.000000000000000,-10.000000000000000)", "ID[\"EPSG\",32632]",
-                                 "NoData Value=-9999", "Unit Type: m"}));
-  EXPECT_FALSE(test::holds(info, {"arning"}));
-}
-
-TEST_F(Cf, gives_releases_names_that_netcdf_can_hold) {
-  TALUS_NEED_TOOL("command -v ncdump", "netcdf-bin");
-  write_netcdf(file_, full_run(test::epsg(32632), 600000, 5100000), {});
-  const auto header = output_of("ncdump -h '" + file_.string() + "'");
-  EXPECT_TRUE(test::holds(header, {"double deposit_thickness_upper_scar(y, x)",
-                                   "double deposit_thickness_bed_2_5(y, x)", "double deposit_thickness_bed_2_5_(y, x)",
-                                   "double eroded_depth(y, x)", "end of release bed-2.5, vertical"}));
+  EXPECT_TRUE(holds(info, {"Origin = (600000.000000000000000,5100300.000000000000000)",
+                           "Pixel Size = (10.000000000000000,-10.000000000000000)", "ID[\"EPSG\",32632]",
+                           "NoData Value=-9999", "Unit Type: m"}));
+  EXPECT_FALSE(holds(info, {"arning"}));
 }
 
 }  // namespace

@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GeoTIFF and NetCDF: what they hold, read by our reader and by tools that are not ours.
+// GeoTIFF, NetCDF and tables: what they hold, read by our reader and by tools that are not ours.
+#include <fmt/format.h>
 #include <netcdf.h>
+#include <netcdf_mem.h>
 
 #include "common/gis/crs.hpp"
-#include "common/gis/read_raster.hpp"
+#include "common/gis/outlines.hpp"
+#include "common/gis/raster_file.hpp"
 #include "postprocess/fields/fields.hpp"
-#include "postprocess/maps/cf_projection.hpp"
-#include "postprocess/maps/geotiff.hpp"
-#include "postprocess/maps/netcdf.hpp"
+#include "postprocess/maps/maps.hpp"
+#include "postprocess/maps/nc_file.hpp"
+#include "postprocess/writers/job.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/postprocess/scene.hpp"
@@ -16,6 +19,7 @@
 namespace talus::postprocess {
 namespace {
 
+using test::holds;
 using test::output_of;
 using test::small_run;
 
@@ -40,16 +44,14 @@ TEST(Fields, lose_no_volume_that_left_the_ground) {
   EXPECT_EQ(volume_under(raster.values, 10), 24200);
 }
 
-class MapFiles : public ::testing::Test {
- protected:
-  test::Scratch scratch_;
+struct MapFiles : test::InScratch {
   const talus::Run run_ = small_run();
 };
 
 TEST_F(MapFiles, geotiffs_keep_the_volume_and_say_what_they_are) {
-  const auto files = write_geotiffs(scratch_.folder(), run_);
+  const auto files = write_geotiffs(scratch.folder(), run_);
   ASSERT_EQ(files.size(), 5U);
-  const auto deposit = read_raster(scratch_ / "deposit_thickness.tif");
+  const auto deposit = read_raster(scratch / "deposit_thickness.tif");
   EXPECT_NEAR(volume_under(deposit.values, deposit.grid.cell), run_.summary.volume_final,
               1e-9 * run_.summary.volume_final);
   EXPECT_TRUE(same_crs(deposit.grid.crs_wkt, test::utm32n));
@@ -57,23 +59,23 @@ TEST_F(MapFiles, geotiffs_keep_the_volume_and_say_what_they_are) {
   EXPECT_EQ(deposit.at(29, 15), 6.5);
   TALUS_NEED_TOOL("command -v gdalinfo", "gdal-bin");
   const auto info = output_of("gdalinfo '" + files.front().string() + "'");
-  EXPECT_TRUE(test::holds(
-      info, {"LAYOUT=COG", "vertical thickness", "Unit Type: m", "NoData Value=-9999", "Float64", "32632"}));
+  EXPECT_TRUE(
+      holds(info, {"LAYOUT=COG", "vertical thickness", "Unit Type: m", "NoData Value=-9999", "Float64", "32632"}));
 }
 
 TEST_F(MapFiles, say_what_the_analyst_insisted_on) {
   TALUS_NEED_TOOL("command -v gdalinfo", "gdal-bin");
   auto run = run_;
   run.summary.findings = {test::finding(Severity::refusal, "swapped-surveys", "what rose lies higher")};
-  for (const auto& file : write_geotiffs(scratch_.folder(), run)) {
-    const auto info = output_of("gdalinfo '" + file.string() + "'");
-    EXPECT_TRUE(test::holds(info, {"ACCEPTED=swapped-surveys: what rose lies higher"}));
+  for (const auto& file : write_geotiffs(scratch.folder(), run)) {
+    EXPECT_TRUE(
+        holds(output_of("gdalinfo '" + file.string() + "'"), {"ACCEPTED=swapped-surveys: what rose lies higher"}));
   }
 }
 
 TEST_F(MapFiles, geotiffs_pass_gdals_own_cog_validator) {
   TALUS_NEED_TOOL(TALUS_COG_VALIDATOR);
-  for (const auto& file : write_geotiffs(scratch_.folder(), run_)) test::expect_valid_cog(file);
+  for (const auto& file : write_geotiffs(scratch.folder(), run_)) test::expect_valid_cog(file);
 }
 
 std::vector<double> read_variable(const std::filesystem::path& file, const char* name, std::size_t count) {
@@ -87,7 +89,7 @@ std::vector<double> read_variable(const std::filesystem::path& file, const char*
 }
 
 TEST_F(MapFiles, netcdf_holds_the_same_values_and_the_frames) {
-  const auto file = scratch_ / "results.nc";
+  const auto file = scratch / "results.nc";
   write_netcdf(file, run_, {"A test", "talus-postprocess x.toml"});
   const auto n = run_.maps.grid.count();
   const auto deposit = read_variable(file, "deposit_thickness", n);
@@ -107,21 +109,21 @@ TEST_F(MapFiles, netcdf_is_written_without_frames_and_without_crs) {
   auto run = run_;
   run.frames = {};
   run.maps.grid.crs_wkt.clear();
-  const auto file = scratch_ / "results.nc";
+  const auto file = scratch / "results.nc";
   write_netcdf(file, run, {});
   TALUS_NEED_TOOL("command -v ncdump", "netcdf-bin");
   const auto header = output_of("ncdump -h '" + file.string() + "'");
-  EXPECT_TRUE(test::holds(header, {"double deposit_thickness(y, x)"}));
-  EXPECT_FALSE(test::holds(header, {"grid_mapping"}));
-  EXPECT_FALSE(test::holds(header, {"time ="}));
+  EXPECT_TRUE(holds(header, {"double deposit_thickness(y, x)"}));
+  EXPECT_FALSE(holds(header, {"grid_mapping"}));
+  EXPECT_FALSE(holds(header, {"time ="}));
 }
 
 TEST_F(MapFiles, netcdf_speaks_cf_as_ncdump_sees_it) {
   TALUS_NEED_TOOL("command -v ncdump", "netcdf-bin");
-  const auto file = scratch_ / "results.nc";
+  const auto file = scratch / "results.nc";
   write_netcdf(file, run_, {"A test", "talus-postprocess x.toml"});
   const auto header = output_of("ncdump -h '" + file.string() + "'");
-  EXPECT_TRUE(test::holds(
+  EXPECT_TRUE(holds(
       header, {":Conventions = \"CF-1.8\"", ":institution = \"A test\"", ":source = \"Talus",
                ": talus-postprocess x.toml\"", "double thickness(time, y, x)",
                "x:standard_name = \"projection_x_coordinate\"", "time:units = \"seconds since 1970-01-01 00:00:00\"",
@@ -133,23 +135,19 @@ TEST_F(MapFiles, netcdf_speaks_cf_as_ncdump_sees_it) {
 
 TEST_F(MapFiles, netcdf_and_geotiff_lie_in_the_same_place_for_gdal) {
   TALUS_NEED_TOOL("gdalinfo --format netCDF", "gdal-bin with the netCDF driver");
-  const auto file = scratch_ / "results.nc";
+  const auto file = scratch / "results.nc";
   write_netcdf(file, run_, {});
-  write_geotiffs(scratch_.folder(), run_);
+  write_geotiffs(scratch.folder(), run_);
   const auto netcdf = read_raster("NETCDF:\"" + file.string() + "\":deposit_thickness");
-  const auto geotiff = read_raster(scratch_ / "deposit_thickness.tif");
+  const auto geotiff = read_raster(scratch / "deposit_thickness.tif");
   EXPECT_TRUE(same_crs(netcdf.grid.crs_wkt, geotiff.grid.crs_wkt));
   EXPECT_TRUE(test::identical(netcdf, geotiff));
 }
 
 TEST_F(MapFiles, a_netcdf_that_cannot_be_written_is_named_and_leaves_nothing) {
-  std::string fault;
-  {
-    const test::SmallFiles limit(4096);
-    fault = test::fault_of<DataError>([&] { write_netcdf(scratch_ / "results.nc", run_, {}); });
-  }
-  EXPECT_TRUE(test::holds(fault, {"results.nc: cannot be written"}));
-  EXPECT_EQ(scratch_.files(), 0U);
+  const std::string fault = full_disk_fault(4096, [&] { write_netcdf(scratch / "results.nc", run_, {}); });
+  EXPECT_TRUE(test::begins(fault, "./results.nc: cannot be written"));
+  EXPECT_EQ(scratch.files(), 0U);
 }
 
 std::vector<double> numbers_of(const CfProjection& projection, const std::string& name) {
@@ -158,13 +156,17 @@ std::vector<double> numbers_of(const CfProjection& projection, const std::string
   return {};
 }
 
-TEST(CfProjection, reads_both_parallels_of_a_lambert_cone) {
+TEST(CfProjection, reads_both_parallels_of_a_lambert_cone_and_names_nothing_it_does_not_know) {
   const auto cone = cf_projection(crs_by_name("EPSG:2154"));  // Lambert-93
   EXPECT_EQ(cone.grid_mapping_name, "lambert_conformal_conic");
   EXPECT_EQ(numbers_of(cone, "standard_parallel"), (std::vector<double>{49, 44}));
   EXPECT_EQ(numbers_of(cone, "longitude_of_central_meridian"), std::vector<double>{3});
   EXPECT_EQ(numbers_of(cone, "false_easting"), std::vector<double>{700000});
   EXPECT_EQ(numbers_of(cone, "semi_major_axis"), std::vector<double>{6378137});
+  EXPECT_TRUE(cf_projection(crs_by_name("EPSG:5514")).grid_mapping_name.empty()) << "Krovak";
+  EXPECT_TRUE(cf_projection(crs_by_name("EPSG:4326")).grid_mapping_name.empty());
+  EXPECT_TRUE(cf_projection("no CRS").grid_mapping_name.empty());
+  EXPECT_TRUE(cf_projection("").grid_mapping_name.empty());
 }
 
 TEST(CfProjection, gives_grads_in_degrees) {
@@ -180,11 +182,125 @@ TEST(CfProjection, gives_grads_in_degrees) {
   EXPECT_NEAR(numbers_of(paris, "inverse_flattening").at(0), 293.466021293627, 1e-9);
 }
 
-TEST(CfProjection, names_nothing_it_does_not_know) {
-  EXPECT_TRUE(cf_projection(crs_by_name("EPSG:5514")).grid_mapping_name.empty()) << "Krovak";
-  EXPECT_TRUE(cf_projection(crs_by_name("EPSG:4326")).grid_mapping_name.empty());
-  EXPECT_TRUE(cf_projection("no CRS").grid_mapping_name.empty());
-  EXPECT_TRUE(cf_projection("").grid_mapping_name.empty());
+/// A slab on the slope of the small run: columns 10 to 15, rows 12 to 20, 8 m thick along the vertical.
+struct Slab {
+  static constexpr int from = 10, to = 16, bottom = 12, top = 21;
+  static constexpr double thickness = 8;
+  talus::Run run = test::small_run();
+  Slab() {
+    run.maps.critical_thickness = test::block(run.maps.grid, from, to, bottom, top, thickness);
+    run.maps.failure_displacement = test::block(run.maps.grid, from, to, bottom, top, 1);
+  }
+};
+
+using CriticalMass = test::InScratch;
+
+TEST_F(CriticalMass, has_an_outline_where_it_is_thicker_than_the_threshold) {
+  const Slab slab;
+  Options options;
+  options.deposit_threshold = 2;
+  const auto layers = map_outlines(slab.run, options, {});
+  const auto critical = std::ranges::find(layers, "critical", &OutlineLayer::name);
+  ASSERT_NE(critical, layers.end());
+  ASSERT_EQ(critical->features.size(), 1U);
+  EXPECT_EQ(critical->features[0].name, "critical mass > 2 m");
+  ASSERT_EQ(critical->features[0].polygons.size(), 1U);
+  ASSERT_EQ(critical->features[0].polygons[0].rings.size(), 1U);
+  double west = 1e30, east = -1e30, south = 1e30, north = -1e30;
+  for (const auto& [x, y] : critical->features[0].polygons[0].rings[0])
+    west = std::min(west, x), east = std::max(east, x), south = std::min(south, y), north = std::max(north, y);
+  // Interpolated between the centres: 8 m fall to 0 within a cell, to 2 m within three quarters of it.
+  const MapGrid& grid = slab.run.maps.grid;
+  EXPECT_NEAR(west, grid.x(Slab::from) - 7.5, 1e-6);
+  EXPECT_NEAR(east, grid.x(Slab::to - 1) + 7.5, 1e-6);
+  EXPECT_NEAR(south, grid.y(Slab::bottom) - 7.5, 1e-6);
+  EXPECT_NEAR(north, grid.y(Slab::top - 1) + 7.5, 1e-6);
+}
+
+TEST_F(CriticalMass, leaves_no_outline_and_no_surface_in_other_runs) {
+  const auto run = test::small_run();
+  for (const OutlineLayer& layer : map_outlines(run, {}, {})) EXPECT_NE(layer.name, "critical");
+  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), run), {.run = run});
+  EXPECT_FALSE(std::filesystem::exists(scratch / "sliding_surface.tif"));
+}
+
+TEST_F(CriticalMass, lies_on_a_surface_as_far_below_the_ground_as_it_is_thick) {
+  const Slab slab;
+  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), slab.run), {.run = slab.run});
+  const Raster surface = read_raster(scratch / "sliding_surface.tif");
+  const MapGrid& grid = slab.run.maps.grid;
+  int under = 0;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const bool inside = column >= Slab::from && column < Slab::to && row >= Slab::bottom && row < Slab::top;
+      ASSERT_EQ(std::isfinite(surface.at(column, row)), inside) << column << " " << row;
+      if (!inside) continue;
+      // In single precision: 1000 m to 6e-5 m.
+      ASSERT_NEAR(surface.at(column, row), slab.run.maps.before[grid.index(column, row)] - Slab::thickness, 1e-4);
+      ++under;
+    }
+  EXPECT_EQ(under, 6 * 9);
+}
+
+TEST_F(CriticalMass, is_an_outline_of_its_area_to_other_tools) {
+  TALUS_NEED_TOOL("/usr/bin/python3 -c 'from osgeo import ogr'", "python3-gdal");
+  const Slab slab;
+  Options options;
+  options.deposit_threshold = 2;
+  write_gis(scratch.folder(), write_geotiffs(scratch.folder(), slab.run), {.run = slab.run, .options = options});
+  const auto said = test::output_of("/usr/bin/python3 -c \"from osgeo import ogr; d = ogr.Open('" +
+                                    (scratch / "outlines.gpkg").string() +
+                                    "'); l = d.GetLayerByName('critical'); print([(f.GetGeometryRef().IsValid(), "
+                                    "round(f['area_m2'], 3)) for f in l])\" 2>/dev/null");
+  // 50 m and 80 m between the outermost centres, 7.5 m beyond them; the corners are cut off.
+  const double area = (50 + 15) * (80 + 15) - 4 * 7.5 * 7.5 / 2;
+  EXPECT_TRUE(holds(said, {fmt::format("[(True, {:.1f}", area)})) << "and not " << area;
+}
+
+talus::Run watched() {
+  talus::Run run;
+  const auto add = [&](const char* name, const char* unit, const char* quantity, const char* place,
+                       std::vector<double> values) {
+    run.history.columns.push_back({name, unit, quantity, place, std::move(values)});
+  };
+  add("gauge_a_thickness_m", "m", "thickness", "gauge a", {0, 1.5});
+  add("gauge_b-1_thickness_m", "m", "thickness", "gauge b-1", {2, 2.5});
+  add("section_s_discharge_m3_s", "m3 s-1", "discharge", "section s", {0, nan});
+  add("section_s_passed_m3", "m3", "volume that passed", "section s", {0, 12});
+  add("time_s", "s", "", "", {0, 0.5});
+  return run;
+}
+
+TEST(HistoryFiles, tables_of_places_have_a_row_for_every_record_and_place_and_none_without_records) {
+  const auto tables = place_tables(watched().history);
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[0].first, "gauge");
+  EXPECT_EQ(tables[0].second, "time_s,gauge,thickness_m\n0,a,0\n0,b-1,2\n0.5,a,1.5\n0.5,b-1,2.5\n");
+  EXPECT_EQ(tables[1].second, "time_s,section,discharge_m3_s,passed_m3\n0,s,0,0\n0.5,s,nan,12\n");
+  EXPECT_TRUE(place_tables({}).empty());
+  EXPECT_FALSE(history_netcdf(talus::Run{}, "").empty());
+}
+
+TEST(HistoryFiles, netcdf_has_a_variable_for_every_column) {
+  std::string bytes = history_netcdf(watched(), "");
+  int file = 0, id = 0;
+  ASSERT_EQ(nc_open_mem("history.nc", NC_NOWRITE, bytes.size(), bytes.data(), &file), NC_NOERR);
+  double values[2];
+  ASSERT_EQ(nc_inq_varid(file, "gauge_b_1_thickness_m", &id), NC_NOERR);
+  ASSERT_EQ(nc_get_var_double(file, id, values), NC_NOERR);
+  EXPECT_EQ(values[1], 2.5);
+  char unit[16] = {}, place[16] = {};
+  nc_get_att_text(file, id, "units", unit);
+  nc_get_att_text(file, id, "place", place);
+  EXPECT_STREQ(unit, "m");
+  EXPECT_STREQ(place, "gauge b-1");
+  ASSERT_EQ(nc_inq_varid(file, "section_s_discharge_m3_s", &id), NC_NOERR);
+  ASSERT_EQ(nc_get_var_double(file, id, values), NC_NOERR);
+  double fill = 0;
+  ASSERT_EQ(nc_get_att_double(file, id, "_FillValue", &fill), NC_NOERR);
+  EXPECT_EQ(values[1], fill) << "a record without a value";
+  ASSERT_EQ(nc_inq_varid(file, "time", &id), NC_NOERR);
+  nc_close(file);
 }
 
 }  // namespace

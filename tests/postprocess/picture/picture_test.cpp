@@ -4,14 +4,9 @@
 
 #include <map>
 
-#include "common/map/cells_inside.hpp"
-#include "common/map/isolines.hpp"
-#include "postprocess/fields/classes.hpp"
-#include "postprocess/picture/furniture.hpp"
-#include "postprocess/picture/hillshade.hpp"
-#include "postprocess/picture/layers.hpp"
-#include "postprocess/picture/map_picture.hpp"
-#include "postprocess/picture/search_words.hpp"
+#include "common/map/polygon.hpp"
+#include "postprocess/fields/fields.hpp"
+#include "postprocess/picture/picture.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -128,6 +123,10 @@ std::map<std::uint32_t, int> colours_of(const std::string& png) {
   return colours;
 }
 
+std::map<std::uint32_t, int> colours_of(const talus::Run& run, const std::optional<Survey>& survey = {}) {
+  return colours_of(map_picture({run, {}, survey, make_score(run, {}, survey, thalweg_of(run, {}))}));
+}
+
 /// Pixels as strongly coloured (red well above blue) as the classes are; the rest of the map is grey, blue or green.
 int coloured_pixels(const std::map<std::uint32_t, int>& colours, int least_lightness, int most_lightness) {
   int count = 0;
@@ -140,24 +139,18 @@ int coloured_pixels(const std::map<std::uint32_t, int>& colours, int least_light
 
 TEST(Picture, shows_the_deposit_in_its_classes) {
   const auto run = small_run();
-  const std::optional<Survey> no_survey;
-  const auto png = map_picture({run, {}, no_survey, make_score(run, {}, no_survey)});
-  const auto colours = colours_of(png);
+  const auto colours = colours_of(run);
   // Two classes lie on the ground: 1 - 2 m (orange) and 5 - 10 m (dark red), each over thousands of pixels.
   EXPECT_GT(coloured_pixels(colours, 170, 255), 20000);
   EXPECT_GT(coloured_pixels(colours, 60, 150), 10000);
   auto empty = run;
   empty.maps.deposit_thickness.assign(run.maps.grid.count(), 0.0);
-  const auto bare = colours_of(map_picture({empty, {}, no_survey, make_score(empty, {}, no_survey)}));
-  EXPECT_LT(coloured_pixels(bare, 60, 150), 10000) << "no deposit: only the legend is coloured";
+  EXPECT_LT(coloured_pixels(colours_of(empty), 60, 150), 10000) << "no deposit: only the legend is coloured";
 }
 
 TEST(Picture, of_a_search_shows_what_fails_first_in_place_of_a_deposit) {
   auto run = small_run();
-  const std::optional<Survey> no_survey;
-  const auto dark = [&] {
-    return coloured_pixels(colours_of(map_picture({run, {}, no_survey, make_score(run, {}, no_survey)})), 60, 150);
-  };
+  const auto dark = [&] { return coloured_pixels(colours_of(run), 60, 150); };
   run.maps.critical_thickness.assign(run.maps.grid.count(), 0.0);
   EXPECT_LT(dark(), 10000) << "nothing fails: only the legend is coloured, though ground lies there";
   std::swap(run.maps.critical_thickness, run.maps.deposit_thickness);
@@ -179,16 +172,15 @@ TEST(Picture, of_a_search_says_the_factor_and_the_mass) {
   EXPECT_EQ(search_numbers(input).size(), 2U) << "ground and lower end";
   run.summary.provenance.emplace_back("stability.factor_of_safety", "1.2174");
   run.summary.provenance.emplace_back("stability.critical_volume_m3", "44318.5");
-  EXPECT_EQ(search_line(input).find("factor of safety 1.22"), 0U) << search_line(input);
+  EXPECT_TRUE(test::begins(search_line(input), "factor of safety 1.22"));
   const auto numbers = search_numbers(input);
   EXPECT_EQ(std::ranges::count(numbers, std::pair<std::string, std::string>("Fails first", volume_words(44300))), 1);
 }
 
 int blue_pixels(const talus::Run& run, const std::optional<Survey>& survey) {
   int count = 0;
-  for (const auto& [colour, times] : colours_of(map_picture({run, {}, survey, make_score(run, {}, survey)}))) {
+  for (const auto& [colour, times] : colours_of(run, survey))
     if (static_cast<int>(colour & 0xffU) - static_cast<int>(colour >> 16U) > 120) count += times;
-  }
   return count;
 }
 

@@ -7,17 +7,16 @@
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
-#include "postprocess/report/pack.hpp"
 #include "postprocess/report/page.hpp"
-#include "postprocess/report/parts.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
 namespace {
 
+using test::holds;
+
 /// A run, its options and score, and the report of them.
-class Report : public ::testing::Test {
- protected:
+struct Report : test::InScratch {
   Report() {
     run_.maps.grid.crs_wkt = test::utm32n;
     test::write_run(file_, run_);
@@ -38,14 +37,14 @@ class Report : public ::testing::Test {
     survey.footprint_threshold = 1;
     survey_ = survey;
   }
+  Json data() { return data_of(report_html(input())); }
   static Json data_of(const std::string& page) {
     const std::string begin = "<script type=\"application/json\" id=\"data\">";
     const auto at = page.find(begin) + begin.size();
     return Json::parse(page.substr(at, page.find("</script>", at) - at));
   }
 
-  test::Scratch scratch_;
-  const std::filesystem::path file_ = scratch_ / "run.h5";
+  const std::filesystem::path file_ = scratch / "run.h5";
   talus::Run run_ = test::small_run();
   Options options_;
   std::optional<Survey> survey_;
@@ -89,26 +88,29 @@ std::vector<double> unpacked(const nlohmann::ordered_json& packed, std::size_t c
   return values;
 }
 
-TEST(Pack, base64_is_that_of_the_standard) {
+TEST(Pack, base64_is_that_of_the_standard_and_a_cut_holds_the_cells_that_touch_the_window) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");  // RFC 4648, section 10
   EXPECT_EQ(base64("fo"), "Zm8=");
   EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
   EXPECT_EQ(base64(std::string("\xff\x00\x80", 3)), "/wCA");
+  const MapGrid grid{.columns = 4, .rows = 3, .west = 100, .south = 0, .cell = 10, .crs_wkt = ""};
+  const Raster raster{grid, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}};
+  const auto part = cut(raster, Window{110, 10, 130, 25});
+  EXPECT_EQ(part.grid.west, 110);
+  EXPECT_EQ(part.grid.south, 10);
+  EXPECT_EQ(part.values, (std::vector<double>{5, 6, 9, 10}));
+  EXPECT_EQ(cut(raster, Window{0, -5, 900, 900}).values, raster.values);
 }
 
-TEST(Pack, values_come_back_within_half_a_step_and_gaps_as_gaps) {
+TEST(Pack, values_come_back_within_half_a_step_gaps_as_gaps_and_one_value_everywhere_exactly) {
   std::vector<double> values{nan, -3.25, 0, 129.7, 1e-3, nan, 77.123456};
   const auto back = unpacked(packed(values), values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isnan(values[i]))
       EXPECT_TRUE(std::isnan(back[i])) << i;
     else
       EXPECT_NEAR(back[i], values[i], 0.5 * (129.7 + 3.25) / 65534 * (1 + 1e-9)) << i;
-  }
-}
-
-TEST(Pack, one_value_everywhere_and_nothing_at_all_come_back_exactly) {
   EXPECT_EQ(unpacked(packed(std::vector<double>{4.2, 4.2}), 2), (std::vector<double>{4.2, 4.2}));
   for (const double v : unpacked(packed(std::vector<double>{nan, nan}), 2)) EXPECT_TRUE(std::isnan(v));
 }
@@ -128,16 +130,6 @@ TEST(Pack, merged_cells_keep_volume_peaks_and_first_arrivals) {
   EXPECT_EQ(factor_for(raster.grid, 5), 2);
 }
 
-TEST(Pack, a_cut_holds_the_cells_that_touch_the_window) {
-  const MapGrid grid{.columns = 4, .rows = 3, .west = 100, .south = 0, .cell = 10, .crs_wkt = ""};
-  const Raster raster{grid, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}};
-  const auto part = cut(raster, {110, 10, 130, 25});
-  EXPECT_EQ(part.grid.west, 110);
-  EXPECT_EQ(part.grid.south, 10);
-  EXPECT_EQ(part.values, (std::vector<double>{5, 6, 9, 10}));
-  EXPECT_EQ(cut(raster, {0, -5, 900, 900}).values, raster.values);
-}
-
 TEST(ReportLimits, differences_have_a_round_symmetric_scale_that_single_cells_do_not_move) {
   std::vector<double> differences(1000, 0.9);
   differences[7] = 80;
@@ -155,7 +147,7 @@ Json layer_of(const Json& data, const std::string& id) {
 }
 
 TEST_F(Report, layers_hold_the_maps_that_the_geotiffs_hold) {
-  const auto data = data_of(report_html(input()));
+  const Json data = this->data();
   const auto layer = layer_of(data, "deposit");
   const auto& grid = layer.at("grid");
   const int columns = grid.at("columns"), rows = grid.at("rows");
@@ -174,18 +166,23 @@ TEST_F(Report, layers_hold_the_maps_that_the_geotiffs_hold) {
   EXPECT_GT(compared, 500);
 }
 
-TEST_F(Report, no_layer_of_a_survey_without_one) {
-  const auto data = data_of(report_html(input()));
-  for (const auto& layer : data.at("map").at("layers")) {
+TEST_F(Report, has_no_layer_of_a_survey_without_one_and_hands_on_what_two_models_say_of_one_another) {
+  const Json bare = data();
+  for (const auto& layer : bare.at("map").at("layers")) {
     EXPECT_NE(layer.at("id"), "difference");
     EXPECT_NE(layer.at("id"), "surveyed");
   }
-  EXPECT_TRUE(data.at("run").at("survey").is_null());
+  EXPECT_TRUE(bare.at("run").at("survey").is_null());
+  EXPECT_TRUE(data().at("surveys").is_null());
+  comparison_ = R"({"alignment": {"known": true, "after_lies_east_m": 4.02}})";
+  EXPECT_EQ(data().at("surveys").at("alignment").at("after_lies_east_m"), 4.02);
+  comparison_ = "{ cut sho";
+  EXPECT_THROW(report_html(input()), DataError);
 }
 
 TEST_F(Report, difference_is_simulated_minus_surveyed_where_either_is_a_deposit) {
   survey_it();
-  const auto layer = layer_of(data_of(report_html(input())), "difference");
+  const auto layer = layer_of(data(), "difference");
   const auto& grid = layer.at("grid");
   double sum = 0;
   int cells = 0;
@@ -199,20 +196,12 @@ TEST_F(Report, difference_is_simulated_minus_surveyed_where_either_is_a_deposit)
   EXPECT_NEAR(sum / cells, 1, 1e-9);
 }
 
-TEST_F(Report, what_two_models_say_of_one_another_is_handed_on) {
-  EXPECT_TRUE(data_of(report_html(input())).at("surveys").is_null());
-  comparison_ = R"({"alignment": {"known": true, "after_lies_east_m": 4.02}})";
-  EXPECT_EQ(data_of(report_html(input())).at("surveys").at("alignment").at("after_lies_east_m"), 4.02);
-  comparison_ = "{ cut sho";
-  EXPECT_THROW(report_html(input()), DataError);
-}
-
 TEST_F(Report, a_title_cannot_end_the_script_that_holds_the_data) {
   survey_it();
   run_.summary.title = "</script><b>Slope & \"co\"";
   const auto page = report_html(input());
-  EXPECT_FALSE(test::holds(page, {"</script><b>"}));
-  EXPECT_TRUE(test::holds(page, {"<title>&lt;/script&gt;&lt;b&gt;Slope &amp; &quot;co&quot;</title>"}));
+  EXPECT_FALSE(holds(page, {"</script><b>"}));
+  EXPECT_TRUE(holds(page, {"<title>&lt;/script&gt;&lt;b&gt;Slope &amp; &quot;co&quot;</title>"}));
   const auto data = data_of(page);
   EXPECT_EQ(data.at("run").at("title"), run_.summary.title);
   EXPECT_EQ(data.at("run").at("material"), "an elastic material");
@@ -220,8 +209,8 @@ TEST_F(Report, a_title_cannot_end_the_script_that_holds_the_data) {
   EXPECT_EQ(data.at("run").at("survey").at("name"), "last <year>");
 }
 
-TEST_F(Report, parameters_come_with_their_defaults_and_missing_stages_are_named) {
-  const auto stages = data_of(report_html(input())).at("stages");
+TEST_F(Report, parameters_come_with_defaults_stages_may_be_missing_and_a_release_has_both_conventions) {
+  const auto stages = data().at("stages");
   EXPECT_TRUE(stages.at(0).at("missing"));
   EXPECT_FALSE(stages.at(1).at("missing"));
   const auto key = stages.at(1).at("keys").at(0);
@@ -229,12 +218,7 @@ TEST_F(Report, parameters_come_with_their_defaults_and_missing_stages_are_named)
   EXPECT_EQ(key.at("value"), "0.4");
   EXPECT_EQ(key.at("default"), "0.5");
   EXPECT_EQ(stages.at(1).at("facts").at(0), (Json{"input", "a  sha256 0"}));
-}
-
-TEST_F(Report, both_conventions_of_the_release_follow_from_the_slope_of_the_bed) {
-  for (int column = 0; column < run_.maps.grid.columns; ++column)  // a plane of 3:4, so that the cosine is 0.8
-    for (int row = 0; row < run_.maps.grid.rows; ++row)
-      run_.maps.terrain[run_.maps.grid.index(column, row)] = 1000 - 7.5 * column;
+  test::tilt(run_.maps);
   const auto release = volumes_json(run_, 1.0).at(0);
   EXPECT_EQ(release.at("name"), "Release");
   EXPECT_NEAR(release.at("volume").get<double>(), 24000, 1e-9);
@@ -245,10 +229,9 @@ TEST_F(Report, both_conventions_of_the_release_follow_from_the_slope_of_the_bed)
 }
 
 TEST_F(Report, columns_of_the_history_at_a_place_come_with_what_they_measure_there) {
-  run_.history.columns = {
-      {.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 20}},
-      {.name = "gauge_toe_thickness_m", .unit = "m", .quantity = "thickness", .place = "gauge toe", .values = {0, 3}}};
-  const Json series = data_of(report_html(input()))["series"];
+  run_.history.columns = {{"time_s", "s", "", "", {0, 20}},
+                          {"gauge_toe_thickness_m", "m", "thickness", "gauge toe", {0, 3}}};
+  const Json series = data()["series"];
   EXPECT_EQ(series["history"]["time_s"], (Json{0, 20}));
   EXPECT_EQ(series["history"]["gauge_toe_thickness_m"], (Json{0, 3}));
   ASSERT_EQ(series["at_places"].size(), 1U);
@@ -259,7 +242,7 @@ TEST_F(Report, columns_of_the_history_at_a_place_come_with_what_they_measure_the
 
 TEST_F(Report, profile_follows_the_thalweg_from_the_release_to_the_deposit) {
   survey_it();
-  const auto profile = data_of(report_html(input())).at("profile");
+  const auto profile = data().at("profile");
   const auto count = profile.at("distance").size();
   ASSERT_GT(count, 10U);
   for (const auto* key :
@@ -331,34 +314,28 @@ TEST(Page, loads_nothing_and_has_a_place_for_title_and_data) {
 class ReportWords : public Report {};
 
 TEST_F(ReportWords, volume_in_motion_comes_from_every_record_of_the_history) {
-  run_.history.columns = {
-      {.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 0.5, 1}},
-      {.name = "moving_volume_m3", .unit = "m3", .quantity = "", .place = "", .values = {0, 700, 900}},
-      {.name = "moving_speed_m_s", .unit = "m s-1", .quantity = "", .place = "", .values = {0, 2, 3.25}}};
-  Json motion = data_of(report_html(input()))["series"]["motion"];
+  run_.history.columns = {{"time_s", "s", "", "", {0, 0.5, 1}},
+                          {"moving_volume_m3", "m3", "", "", {0, 700, 900}},
+                          {"moving_speed_m_s", "m s-1", "", "", {0, 2, 3.25}}};
+  Json motion = data()["series"]["motion"];
   EXPECT_TRUE(motion["from_history"]);
   EXPECT_EQ(motion["time"], (Json{0, 0.5, 1}));
   EXPECT_EQ(motion["volume"], (Json{0, 700, 900}));
   EXPECT_EQ(motion["mean_speed"], (Json{0, 2, 3.25}));
   run_.history.columns.resize(2);  // a run from before
-  motion = data_of(report_html(input()))["series"]["motion"];
+  motion = data()["series"]["motion"];
   EXPECT_TRUE(motion.is_null() || !motion["from_history"].get<bool>());
 }
 
 TEST_F(ReportWords, gauges_and_obstacles_stand_on_the_map_with_what_was_measured) {
-  EXPECT_TRUE(data_of(report_html(input()))["places"].empty());
+  EXPECT_TRUE(data()["places"].empty());
   const auto window = shown_window(input());
   run_.summary.places = {{"gauge toe", {{{window.west + 30, window.south + 40}}}},
                          {"obstacle wall", {{{0, 0}, {4, 0}, {4, 9}}}}};
-  run_.history.columns = {
-      {.name = "time_s", .unit = "s", .quantity = "", .place = "", .values = {0, 20, 40}},
-      {.name = "gauge_toe_thickness_m",
-       .unit = "m",
-       .quantity = "thickness",
-       .place = "gauge toe",
-       .values = {0, 3, 1}},
-      {.name = "x", .unit = "N s", .quantity = "impulse", .place = "obstacle wall", .values = {0, nan, -5}}};
-  const Json places = data_of(report_html(input()))["places"];
+  run_.history.columns = {{"time_s", "s", "", "", {0, 20, 40}},
+                          {"gauge_toe_thickness_m", "m", "thickness", "gauge toe", {0, 3, 1}},
+                          {"x", "N s", "impulse", "obstacle wall", {0, nan, -5}}};
+  const Json places = data()["places"];
   ASSERT_EQ(places.size(), 2U);
   EXPECT_EQ(places[0]["kind"], "gauge");
   EXPECT_EQ(places[0]["name"], "toe");
@@ -381,15 +358,15 @@ TEST_F(ReportWords, another_models_run_is_not_called_surveyed) {
     for (const auto& note : score.notes) words += note + "\n";
     return words;
   };
-  EXPECT_TRUE(test::holds(words_of(make_score(run_, options_, survey_, thalweg_)), {"surveyed deposit volume"}));
+  EXPECT_TRUE(holds(words_of(make_score(run_, options_, survey_, thalweg_)), {"surveyed deposit volume"}));
   survey_->kind = ReferenceKind::model;
   std::string words = words_of(make_score(run_, options_, survey_, thalweg_));
-  EXPECT_TRUE(test::holds(words, {"reference deposit volume"}));
+  EXPECT_TRUE(holds(words, {"reference deposit volume"}));
   const std::string denial = "It was not surveyed.";
-  ASSERT_TRUE(test::holds(words, {denial}));
+  ASSERT_TRUE(holds(words, {denial}));
   words.erase(words.find(denial), denial.size());
-  EXPECT_FALSE(test::holds(words, {"survey"})) << words.substr(words.find("survey") - 60, 120);
-  EXPECT_EQ(data_of(report_html(input()))["run"]["survey"]["noun"], "reference");
+  EXPECT_FALSE(holds(words, {"survey"})) << words.substr(words.find("survey") - 60, 120);
+  EXPECT_EQ(data()["run"]["survey"]["noun"], "reference");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace talus::postprocess {
 namespace {
 
 using test::block;
+using test::holds;
 using test::small_grid;
 using test::small_run;
 
@@ -26,27 +27,37 @@ Survey shifted_survey() {
   return survey;
 }
 
+Survey measured_survey() {
+  Survey survey = shifted_survey();
+  survey.measured = survey.deposit;
+  survey.error = {std::vector<double>(survey.grid.count(), 0.5), 30, 1.96};
+  return survey;
+}
+
 nlohmann::json json_of(const Run& run, const std::optional<Survey>& survey) {
-  return nlohmann::json::parse(to_json(make_score(run, {}, survey)));
+  return nlohmann::json::parse(to_json(make_score(run, {}, survey, thalweg_of(run, {}))));
+}
+
+/// These keys have these values.
+void expect_values(const nlohmann::json& found, const nlohmann::json& expected) {
+  for (const auto& [key, value] : expected.items()) EXPECT_EQ(found.at(key), value) << key;
 }
 
 TEST(Score, holds_the_runs_numbers_without_a_survey) {
   const auto json = json_of(small_run(), {});
-  EXPECT_EQ(json.at("volume_released_m3"), 24000);
-  EXPECT_EQ(json.at("volume_outflow_m3"), 0);
-  EXPECT_EQ(json.at("volume_closure_error"), 0);
+  expect_values(json, {{"volume_released_m3", 24000}, {"volume_outflow_m3", 0}, {"volume_closure_error", 0}});
   EXPECT_NEAR(json.at("volume_map_error").get<double>(), 0, 1e-12);
-  EXPECT_EQ(json.at("particles"), 320);
-  EXPECT_EQ(json.at("steps"), 77);
-  EXPECT_EQ(json.at("wall_time_s"), 0.25);
-  EXPECT_EQ(json.at("on"), "cpu");
-  EXPECT_EQ(json.at("affected_area_m2"), 320 * 100);
-  EXPECT_EQ(json.at("max_deposit_thickness_m"), 6.5);
+  expect_values(json, {{"particles", 320},
+                       {"steps", 77},
+                       {"wall_time_s", 0.25},
+                       {"on", "cpu"},
+                       {"affected_area_m2", 320 * 100},
+                       {"max_deposit_thickness_m", 6.5}});
   EXPECT_FALSE(json.contains("deposit_csi"));
   EXPECT_EQ(json.at("not_scored").at("deposit_csi"), "no survey is given");
 }
 
-TEST(Score, measures_runout_from_the_crown_to_the_farthest_deposit) {
+TEST(Score, measures_runout_from_the_crown_to_the_farthest_deposit_and_along_the_thalweg) {
   const auto run = small_run();
   const auto json = json_of(run, {});
   const double length = json.at("runout_m"), drop = json.at("drop_m");
@@ -54,6 +65,12 @@ TEST(Score, measures_runout_from_the_crown_to_the_farthest_deposit) {
   EXPECT_GE(length, 310);
   EXPECT_NEAR(drop, 31 * 5.0 + 6, 8) << "5 m a column, and the release's own thickness";
   EXPECT_DOUBLE_EQ(json.at("h_over_l").get<double>(), drop / length);
+  EXPECT_NEAR(json.at("thalweg_runout_m").get<double>(), 310, 45) << "31 columns, and a way of up to 9 rows across";
+  EXPECT_GE(json.at("thalweg_runout_m").get<double>(), json.at("runout_m").get<double>() - 1e-9)
+      << "a bend is no shorter";
+  EXPECT_NEAR(json.at("thalweg_fahrboeschung_deg").get<double>(),
+              std::atan(json.at("thalweg_h_over_l").get<double>()) * 180 / 3.14159265358979, 1e-9);
+  EXPECT_NEAR(json.at("max_drop_m").get<double>(), 31 * 5 + 6 + 4, 6) << "the last column's lowest row";
 }
 
 TEST(Score, agrees_with_a_survey_made_by_hand) {
@@ -98,10 +115,7 @@ TEST(Score, compares_along_a_line) {
 
 TEST(Score, says_the_release_by_both_conventions) {
   auto run = small_run();
-  const auto& grid = run.maps.grid;
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      run.maps.terrain[grid.index(column, row)] = 1000 - 0.75 * grid.cell * column;
+  test::tilt(run.maps);
   const auto json = json_of(run, {});
   EXPECT_NEAR(json.at("volume_if_thickness_were_slope_normal_m3").get<double>(), 24000 * 1.25, 1e-6)
       << "slope 3 : 4 : 5";
@@ -119,11 +133,11 @@ TEST(Score, says_of_the_release_what_preprocess_said) {
                             {"max_thickness_vertical_m", "15.69"},
                             {"max_thickness_slope_normal_m", "14.88"}};
   const auto json = json_of(run, {});
-  EXPECT_EQ(json.at("release_area_m2"), 3600);
-  EXPECT_EQ(json.at("release_true_area_m2"), 4281.5);
-  EXPECT_EQ(json.at("volume_if_thickness_were_slope_normal_m3"), 25999);
-  EXPECT_EQ(json.at("max_release_thickness_m"), 15.69);
-  EXPECT_EQ(json.at("max_release_thickness_slope_normal_m"), 14.88);
+  expect_values(json, {{"release_area_m2", 3600},
+                       {"release_true_area_m2", 4281.5},
+                       {"volume_if_thickness_were_slope_normal_m3", 25999},
+                       {"max_release_thickness_m", 15.69},
+                       {"max_release_thickness_slope_normal_m", 14.88}});
 }
 
 TEST(Score, has_the_findings_of_all_stages) {
@@ -135,44 +149,24 @@ TEST(Score, has_the_findings_of_all_stages) {
   EXPECT_EQ(found.at(0).at("accepted_by"), "accept in [preprocess]");
   EXPECT_EQ(found.at(1).at("severity"), "warning");
   EXPECT_EQ(found.at(1).at("numbers").at("layers").at("value"), 2);
-  const std::string table = to_table(make_score(run, {}, {}));
-  EXPECT_TRUE(test::holds(table, {"Refused and accepted in [preprocess], \"swapped-surveys\": what rose"}));
+  EXPECT_TRUE(holds(to_table(make_score(run, {}, {}, thalweg_of(run, {}))),
+                    {"Refused and accepted in [preprocess], \"swapped-surveys\": what rose"}));
 }
 
-TEST(Score, measures_runout_along_the_thalweg) {
-  const auto run = small_run();
-  const auto json = json_of(run, {});
-  EXPECT_NEAR(json.at("thalweg_runout_m").get<double>(), 310, 45) << "31 columns, and a way of up to 9 rows across";
-  EXPECT_GE(json.at("thalweg_runout_m").get<double>(), json.at("runout_m").get<double>() - 1e-9)
-      << "a bend is no shorter";
-  EXPECT_NEAR(json.at("thalweg_fahrboeschung_deg").get<double>(),
-              std::atan(json.at("thalweg_h_over_l").get<double>()) * 180 / 3.14159265358979, 1e-9);
-  EXPECT_NEAR(json.at("max_drop_m").get<double>(), 31 * 5 + 6 + 4, 6) << "the last column's lowest row";
-}
-
-TEST(Score, measures_residuals_by_the_surveys_error) {
-  auto survey = shifted_survey();
-  survey.measured = survey.deposit;
-  survey.error = {std::vector<double>(survey.grid.count(), 0.5), 30, 1.96};
+TEST(Score, measures_residuals_by_the_surveys_error_and_warns_where_it_hides_deposit) {
+  auto survey = measured_survey();
   const auto json = json_of(small_run(), survey);
   // In units of 0.5 m: 20 cells 3 too thick, 20 cells 4 too thin, 18 cells 9 too thick, 62 cells 1 too thin.
-  EXPECT_EQ(json.at("residual_cells"), 120);
-  EXPECT_EQ(json.at("residual_median_sigma"), -1);
+  expect_values(json, {{"residual_cells", 120}, {"residual_median_sigma", -1}});
   EXPECT_NEAR(json.at("residual_within_95").get<double>(), 62.0 / 120, 1e-12);
   EXPECT_NEAR(json.at("residual_chi2").get<double>(), (20 * 9 + 20 * 16 + 18 * 81 + 62 * 1) / 120.0, 1e-12);
   EXPECT_GT(json.at("deposit_csi_sd").get<double>(), 0);
   EXPECT_EQ(json.at("not_scored").at("footprint_csi_sd"),
             "the footprint is not a surveyed change, its error is not known");
-}
-
-TEST(Score, warns_where_the_level_of_detection_hides_deposit) {
-  auto survey = shifted_survey();
-  survey.measured = survey.deposit;
-  survey.error = {std::vector<double>(survey.grid.count(), 0.5), 30, 1.96};
   const auto notes = [&] { return json_of(small_run(), survey).at("notes").dump(); };
-  EXPECT_FALSE(test::holds(notes(), {"level of detection lies above"})) << "0.98 m against 1 m";
+  EXPECT_FALSE(holds(notes(), {"level of detection lies above"})) << "0.98 m against 1 m";
   survey.error.sigma.assign(survey.grid.count(), 0.6);
-  EXPECT_TRUE(test::holds(notes(), {"above the deposit threshold of 1 m on 100 %"}));
+  EXPECT_TRUE(holds(notes(), {"above the deposit threshold of 1 m on 100 %"}));
 }
 
 TEST(Score, is_perfect_against_itself) {
@@ -181,37 +175,34 @@ TEST(Score, is_perfect_against_itself) {
   survey.deposit = run.maps.deposit_thickness;
   survey.footprint = run.maps.peak_thickness;
   const auto json = json_of(run, survey);
-  EXPECT_EQ(json.at("deposit_csi"), 1);
-  EXPECT_EQ(json.at("footprint_csi"), 1);
-  EXPECT_EQ(json.at("thickness_rmse_m"), 0);
-  EXPECT_EQ(json.at("runout_difference_m"), 0);
-  EXPECT_EQ(json.at("centre_of_mass_offset_m"), 0);
+  expect_values(json, {{"deposit_csi", 1},
+                       {"footprint_csi", 1},
+                       {"thickness_rmse_m", 0},
+                       {"runout_difference_m", 0},
+                       {"centre_of_mass_offset_m", 0}});
 }
 
-TEST(Score, leaves_out_what_a_bare_outline_cannot_tell) {
+TEST(Score, leaves_out_what_a_bare_outline_cannot_tell_and_has_no_runout_without_a_deposit) {
   auto survey = shifted_survey();
   survey.deposit.clear();
   const auto json = json_of(small_run(), survey);
   EXPECT_TRUE(json.contains("footprint_csi"));
   EXPECT_FALSE(json.contains("thickness_rmse_m"));
   EXPECT_EQ(json.at("not_scored").at("thickness_rmse_m"), "the survey gives a footprint only");
-}
-
-TEST(Score, has_no_runout_without_a_deposit) {
   auto run = small_run();
   run.maps.deposit_thickness.assign(run.maps.grid.count(), 0.0);
-  const auto json = json_of(run, shifted_survey());
-  EXPECT_FALSE(json.contains("runout_m"));
-  EXPECT_EQ(json.at("deposit_csi"), 0);
-  EXPECT_EQ(json.at("not_scored").at("runout_difference_m"), "the simulation has no run-out");
+  const auto none = json_of(run, shifted_survey());
+  EXPECT_FALSE(none.contains("runout_m"));
+  EXPECT_EQ(none.at("deposit_csi"), 0);
+  EXPECT_EQ(none.at("not_scored").at("runout_difference_m"), "the simulation has no run-out");
 }
 
 TEST(Score, table_says_the_same_in_aligned_columns) {
-  const auto score = make_score(small_run(), {}, shifted_survey());
+  const auto score = make_score(small_run(), {}, shifted_survey(), thalweg_of(small_run(), {}));
   const auto table = to_table(score);
-  EXPECT_TRUE(test::holds(table, {"Small slope\n===========\n", "24 000 m3\n"}));
-  EXPECT_TRUE(test::holds(table, {"0.667\n"})) << "deposit CSI";
-  EXPECT_TRUE(test::holds(table, {"union of both deposits"}));
+  EXPECT_TRUE(holds(table, {"Small slope\n===========\n", "24 000 m3\n"}));
+  EXPECT_TRUE(holds(table, {"0.667\n"})) << "deposit CSI";
+  EXPECT_TRUE(holds(table, {"union of both deposits"}));
   const auto ends_at = [&](const std::string& label, const std::string& value) {
     const auto line = table.find(label);
     return table.find(value, line) + value.size() - table.rfind('\n', line);

@@ -5,21 +5,21 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
 
-#include "common/gis/coordinates.hpp"
 #include "postprocess/fields/fields.hpp"
-#include "postprocess/survey/found_survey.hpp"
 #include "tests/common/findings.hpp"
+#include "tests/common/geojson.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
 namespace {
 
 using test::block;
+using test::holds;
 using test::small_grid;
 using test::small_run;
 
 /// A square of side 4 with a hole of side 2, as GeoJSON in the run's coordinates.
-std::string square_with_hole(double x, double y, double size, const std::string& crs = "EPSG::32632") {
+std::string square_with_hole(double x, double y, double size) {
   const auto ring = [&](double inset) {
     const double a = x + inset, b = y + inset, c = x + size - inset, d = y + size - inset;
     std::string text = "[";
@@ -28,32 +28,32 @@ std::string square_with_hole(double x, double y, double size, const std::string&
     text.back() = ']';
     return text;
   };
-  return R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:)" + crs +
-         R"("}},"features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[)" + ring(0) +
-         "," + ring(0.25 * size) + "]}}]}";
+  return test::geojson(test::feature("Polygon", "[" + ring(0) + "," + ring(0.25 * size) + "]"), 32632);
 }
 
-class SurveyTest : public ::testing::Test {
- protected:
+struct SurveyTest : test::InScratch {
   std::filesystem::path raster(const std::string& name, const MapGrid& grid, const std::vector<double>& values) {
-    write_geotiff(scratch_ / name, {grid, values}, {name, "m", {}});
-    return scratch_ / name;
+    write_geotiff(scratch / name, {grid, values}, {name, "m", {}});
+    return scratch / name;
   }
-  std::string fault() {
-    return test::fault_of<DataError>([&] { read_survey(options_, run_.maps, 1.0); });
+  std::filesystem::path everywhere(const std::string& name, const MapGrid& grid, double value) {
+    return raster(name, grid, std::vector<double>(grid.count(), value));
   }
-  test::Scratch scratch_;
+  std::optional<Survey> read() const { return read_survey(options_, run_.maps, 1.0); }
+  std::string fault() const {
+    return data_fault([&] { read(); });
+  }
   talus::Run run_ = small_run();
   SurveyOptions options_;
 };
 
-TEST_F(SurveyTest, is_empty_when_nothing_is_given) { EXPECT_FALSE(read_survey(options_, run_.maps, 1.0)); }
+TEST_F(SurveyTest, is_empty_when_nothing_is_given) { EXPECT_FALSE(read()); }
 
 TEST_F(SurveyTest, compares_on_the_surveys_own_grid_and_keeps_the_volume) {
   // Coarser, shifted by a part of a cell, covering the whole run.
   const MapGrid grid{.columns = 20, .rows = 16, .west = 599993, .south = 5099991, .cell = 25, .crs_wkt = test::utm32n};
-  options_.thickness = raster("survey.tif", grid, std::vector<double>(grid.count(), 2.0));
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  options_.thickness = everywhere("survey.tif", grid, 2.0);
+  const auto survey = read();
   ASSERT_TRUE(survey);
   EXPECT_EQ(survey->grid.columns, 20);
   const auto simulated = bring_to_survey_grid(run_.maps, *survey);
@@ -66,7 +66,7 @@ TEST_F(SurveyTest, leaves_out_what_was_not_surveyed_and_says_how_much) {
   for (int row = 0; row < 30; ++row)
     for (int column = 30; column < 40; ++column) values[small_grid().index(column, row)] = nan;
   options_.thickness = raster("survey.tif", small_grid(), values);
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto survey = read();
   const auto simulated = bring_to_survey_grid(run_.maps, *survey);
   EXPECT_DOUBLE_EQ(simulated.deposit_left_out,
                    (5 * 10 * 1.5 + 6 * 5.0) * 100);  // columns 30-34, and the core's column 30
@@ -75,12 +75,10 @@ TEST_F(SurveyTest, leaves_out_what_was_not_surveyed_and_says_how_much) {
 
 TEST_F(SurveyTest, brings_thickness_normal_to_the_slope_to_the_vertical) {
   auto& grid = run_.maps.grid;
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      run_.maps.terrain[grid.index(column, row)] = 1000 - 0.75 * grid.cell * column;
-  options_.thickness = raster("normal.tif", grid, std::vector<double>(grid.count(), 2.0));
+  test::tilt(run_.maps);
+  options_.thickness = everywhere("normal.tif", grid, 2.0);
   options_.direction = Direction::slope_normal;
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto survey = read();
   ASSERT_TRUE(survey);
   for (const double value : survey->deposit) EXPECT_NEAR(value, 2.5, 1e-6);  // 3 : 4 : 5
 }
@@ -96,7 +94,7 @@ TEST_F(SurveyTest, takes_the_rise_of_the_surface_from_two_dems) {
   after[scar] += 2;
   options_.after_dem = raster("after.tif", grid, after);
   options_.before_dem = raster("before.tif", grid, run_.maps.before);
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto survey = read();
   ASSERT_TRUE(survey && survey->deposit_is_change);
   EXPECT_EQ(survey->deposit[scar], 0) << "lowered by 4 m: no deposit";
   EXPECT_NEAR(survey->footprint[scar], 4, 1e-9);
@@ -111,7 +109,7 @@ TEST_F(SurveyTest, takes_the_runs_own_surface_when_only_the_after_dem_is_given) 
   auto after = run_.maps.before;
   for (double& z : after) z += 3;
   options_.after_dem = raster("after.tif", run_.maps.grid, after);
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto survey = read();
   EXPECT_NEAR(survey->deposit[run_.maps.grid.index(20, 20)], 3, 1e-9);
   EXPECT_TRUE(std::isnan(survey->deposit[0])) << "outside the run's domain nothing is known";
 }
@@ -125,22 +123,26 @@ std::vector<double> some_change() {
   return change;
 }
 
-TEST_F(SurveyTest, takes_a_difference_as_rise_and_fall) {
+TEST_F(SurveyTest, takes_a_difference_as_rise_and_fall_and_compares_it_with_the_change) {
   options_.difference = raster("difference.tif", small_grid(), some_change());
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto survey = read();
   ASSERT_TRUE(survey && survey->deposit_is_change && survey->footprint_is_change);
   EXPECT_EQ(survey->deposit[small_grid().index(10, 10)], 0.4) << "no level of detection without a sigma";
   EXPECT_EQ(survey->deposit[small_grid().index(20, 10)], 3);
   EXPECT_EQ(survey->deposit[small_grid().index(5, 10)], 0);
   EXPECT_EQ(survey->footprint[small_grid().index(5, 10)], 5);
   EXPECT_TRUE(survey->error.sigma.empty());
+  const auto simulated = bring_to_survey_grid(run_.maps, *survey);
+  EXPECT_EQ(simulated.change[small_grid().index(4, 15)], -6) << "the scar";
+  EXPECT_EQ(simulated.deposit[small_grid().index(4, 15)], 0);
+  EXPECT_EQ(simulated.change[small_grid().index(26, 15)], 1.5);
 }
 
 TEST_F(SurveyTest, counts_what_lies_below_the_level_of_detection_as_no_change) {
   options_.difference = raster("difference.tif", small_grid(), some_change());
   options_.sigma_m = 0.25;  // a level of 0.49 m
   options_.correlation_length = 60;
-  auto survey = read_survey(options_, run_.maps, 1.0);
+  auto survey = read();
   EXPECT_EQ(survey->deposit[small_grid().index(10, 10)], 0);
   EXPECT_EQ(survey->footprint[small_grid().index(10, 10)], 0);
   EXPECT_EQ(survey->measured[small_grid().index(10, 10)], 0.4) << "what was measured is kept for the residuals";
@@ -153,28 +155,26 @@ TEST_F(SurveyTest, counts_what_lies_below_the_level_of_detection_as_no_change) {
 TEST_F(SurveyTest, brings_sigma_to_its_grid_with_the_range_its_file_names) {
   const MapGrid coarse{
       .columns = 20, .rows = 15, .west = 600000, .south = 5100000, .cell = 20, .crs_wkt = test::utm32n};
-  write_geotiff(scratch_ / "sigma.tif", {coarse, std::vector<double>(coarse.count(), 0.3)},
+  write_geotiff(scratch / "sigma.tif", {coarse, std::vector<double>(coarse.count(), 0.3)},
                 {"sigma", "m", {{"CORRELATION_LENGTH_M", "45.5"}}});
   options_.difference = raster("difference.tif", small_grid(), some_change());
-  options_.sigma = scratch_ / "sigma.tif";
-  auto survey = read_survey(options_, run_.maps, 1.0);
+  options_.sigma = scratch / "sigma.tif";
+  auto survey = read();
   ASSERT_EQ(survey->error.sigma.size(), small_grid().count());
   EXPECT_NEAR(survey->error.sigma[small_grid().index(13, 7)], 0.3, 1e-12);
   EXPECT_EQ(survey->error.correlation_length, 45.5);
   EXPECT_EQ(survey->inputs.size(), 2u);
   options_.correlation_length = 80;
-  EXPECT_EQ(read_survey(options_, run_.maps, 1.0)->error.correlation_length, 80) << "the recipe goes first";
+  EXPECT_EQ(read()->error.correlation_length, 80) << "the recipe goes first";
 }
 
 TEST_F(SurveyTest, warns_where_the_range_of_its_errors_is_not_known) {
   options_.difference = raster("difference.tif", small_grid(), some_change());
   options_.sigma_m = 0.25;
-  const auto found = [&] {
-    return test::findings_of([&] { EXPECT_EQ(read_survey(options_, run_.maps, 1.0)->error.correlation_length, 0); });
-  };
+  const auto found = [&] { return test::findings_of([&] { EXPECT_EQ(read()->error.correlation_length, 0); }); };
   ASSERT_EQ(found().size(), 1u);
   EXPECT_EQ(found()[0].name, "unknown-correlation-length");
-  EXPECT_NE(found()[0].message.find("Give correlation_length_m"), std::string::npos) << found()[0].message;
+  EXPECT_TRUE(holds(found()[0].message, {"Give correlation_length_m"}));
 }
 
 TEST_F(SurveyTest, leaves_out_what_was_measured_without_a_sigma) {
@@ -183,22 +183,13 @@ TEST_F(SurveyTest, leaves_out_what_was_measured_without_a_sigma) {
   sigma[small_grid().index(20, 10)] = sigma[small_grid().index(30, 20)] = nan;
   options_.sigma = raster("sigma.tif", small_grid(), sigma);
   options_.correlation_length = 60;
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  const auto survey = read();
   EXPECT_TRUE(std::isnan(survey->deposit[small_grid().index(20, 10)]));
   EXPECT_EQ(survey->deposit[small_grid().index(30, 20)], 0) << "mapped as untouched: needs none";
   EXPECT_EQ(survey->notes, std::vector<std::string>{"1 surveyed cells without a sigma are left out."});
   sigma[3] = -0.1;
   options_.sigma = raster("negative.tif", small_grid(), sigma);
-  EXPECT_TRUE(test::holds(fault(), {"negative.tif: a standard error of -0.1 m (it cannot be negative)"}));
-}
-
-TEST_F(SurveyTest, compares_the_change_itself_with_what_was_measured) {
-  options_.difference = raster("difference.tif", small_grid(), some_change());
-  const auto survey = read_survey(options_, run_.maps, 1.0);
-  const auto simulated = bring_to_survey_grid(run_.maps, *survey);
-  EXPECT_EQ(simulated.change[small_grid().index(4, 15)], -6) << "the scar";
-  EXPECT_EQ(simulated.deposit[small_grid().index(4, 15)], 0);
-  EXPECT_EQ(simulated.change[small_grid().index(26, 15)], 1.5);
+  EXPECT_TRUE(holds(fault(), {"negative.tif: a standard error of -0.1 m (it cannot be negative)"}));
 }
 
 TEST_F(SurveyTest, brings_dems_in_degrees_to_the_runs_crs) {
@@ -209,17 +200,17 @@ TEST_F(SurveyTest, brings_dems_in_degrees_to_the_runs_crs) {
   degrees.south = e.south - 0.001;
   degrees.columns = static_cast<int>((e.east - e.west) / degrees.cell) + 20;
   degrees.rows = static_cast<int>((e.north - e.south) / degrees.cell) + 20;
-  options_.before_dem = raster("before.tif", degrees, std::vector<double>(degrees.count(), 1000));
-  options_.after_dem = raster("after.tif", degrees, std::vector<double>(degrees.count(), 1003));
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  options_.before_dem = everywhere("before.tif", degrees, 1000);
+  options_.after_dem = everywhere("after.tif", degrees, 1003);
+  const auto survey = read();
   EXPECT_TRUE(same_crs(survey->grid.crs_wkt, run.crs_wkt));
   EXPECT_NEAR(survey->grid.cell, 9.3, 0.06);  // of 7.7 x 11.1 m
   EXPECT_NEAR(survey->deposit[survey->grid.index(survey->grid.columns / 2, survey->grid.rows / 2)], 3, 1e-9);
 }
 
 TEST_F(SurveyTest, fills_polygons_and_leaves_their_holes) {
-  options_.polygon = scratch_.write("outline.geojson", square_with_hole(600000, 5100100, 40));
-  const auto survey = read_survey(options_, run_.maps, 1.0);
+  options_.polygon = scratch.write("outline.geojson", square_with_hole(600000, 5100100, 40));
+  const auto survey = read();
   ASSERT_TRUE(survey);
   EXPECT_TRUE(survey->deposit.empty());
   EXPECT_EQ(std::count(survey->footprint.begin(), survey->footprint.end(), 1.0), 16 - 4);
@@ -228,66 +219,61 @@ TEST_F(SurveyTest, fills_polygons_and_leaves_their_holes) {
   EXPECT_EQ(survey->footprint[small_grid().index(4, 10)], 0);
 }
 
-TEST_F(SurveyTest, refuses_a_survey_elsewhere) {
+TEST_F(SurveyTest, refuses_a_survey_elsewhere_in_another_crs_or_missing) {
   auto grid = small_grid();
   grid.west += 50000;
-  options_.thickness = raster("elsewhere.tif", grid, std::vector<double>(grid.count(), 1.0));
-  EXPECT_TRUE(test::holds(fault(), {"elsewhere.tif: no surveyed cell lies in the run's area (survey x 650000.0 to"}));
+  options_.thickness = everywhere("elsewhere.tif", grid, 1.0);
+  EXPECT_TRUE(holds(fault(), {"elsewhere.tif: no surveyed cell lies in the run's area (survey x 650000.0 to"}));
   options_ = {};
-  options_.polygon = scratch_.write("outline.geojson", square_with_hole(650000, 5100100, 40));
-  EXPECT_TRUE(test::holds(fault(), {"no polygon covers a cell of the run's area"}));
-}
-
-TEST_F(SurveyTest, refuses_another_crs_with_the_command_that_mends_it) {
-  auto grid = small_grid();
+  options_.polygon = scratch.write("outline.geojson", square_with_hole(650000, 5100100, 40));
+  EXPECT_TRUE(holds(fault(), {"no polygon covers a cell of the run's area"}));
+  options_ = {};
+  grid = small_grid();
   grid.crs_wkt.clear();
-  options_.thickness = raster("bare.tif", grid, std::vector<double>(grid.count(), 1.0));
-  EXPECT_TRUE(test::holds(fault(), {"bare.tif: CRS is local metric coordinates (the run is in EPSG:32632)",
-                                    "gdal_edit.py -a_srs EPSG:32632"}));
-}
-
-TEST_F(SurveyTest, names_a_missing_file) {
-  options_.thickness = scratch_ / "nowhere.tif";
-  EXPECT_TRUE(test::holds(fault(), {"nowhere.tif: no such file"}));
+  options_.thickness = everywhere("bare.tif", grid, 1.0);
+  EXPECT_TRUE(holds(fault(), {"bare.tif: CRS is local metric coordinates (the run is in EPSG:32632)",
+                              "gdal_edit.py -a_srs EPSG:32632"}));
+  options_.thickness = scratch / "nowhere.tif";
+  EXPECT_TRUE(holds(fault(), {"nowhere.tif: no such file"}));
 }
 
 TEST_F(SurveyTest, finds_what_preprocess_left_or_says_what_is_missing) {
   options_.from_preprocess = true;
-  EXPECT_THROW(options_.find_in(scratch_ / "out"), DataError);
-  std::filesystem::create_directories(scratch_ / "out" / "survey");
+  EXPECT_THROW(options_.find_in(scratch / "out"), DataError);
+  std::filesystem::create_directories(scratch / "out" / "survey");
   for (const char* name : {"slide_difference.tif", "difference_sigma.tif"})
-    std::filesystem::copy_file(raster(name, small_grid(), some_change()), scratch_ / "out" / "survey" / name);
-  options_.find_in(scratch_ / "out");
-  EXPECT_EQ(options_.difference, scratch_ / "out" / "survey" / "slide_difference.tif");
-  EXPECT_EQ(options_.sigma, scratch_ / "out" / "survey" / "difference_sigma.tif");
+    std::filesystem::copy_file(raster(name, small_grid(), some_change()), scratch / "out" / "survey" / name);
+  options_.find_in(scratch / "out");
+  EXPECT_EQ(options_.difference, scratch / "out" / "survey" / "slide_difference.tif");
+  EXPECT_EQ(options_.sigma, scratch / "out" / "survey" / "difference_sigma.tif");
 }
 
 TEST_F(SurveyTest, takes_no_error_of_zero_for_a_known_one) {
   options_.difference = raster("change.tif", small_grid(), some_change());
   std::vector<double> sigma(small_grid().count(), 0.0);
   options_.sigma = raster("zero.tif", small_grid(), sigma);
-  EXPECT_TRUE(test::holds(fault(), {"zero.tif: a standard error of 0 m everywhere"}));
+  EXPECT_TRUE(holds(fault(), {"zero.tif: a standard error of 0 m everywhere"}));
   const auto changed = some_change();
   const auto cell = static_cast<std::size_t>(
       std::find_if(changed.begin(), changed.end(), [](double change) { return change != 0; }) - changed.begin());
   std::fill(sigma.begin(), sigma.end(), 0.3);
   sigma[cell] = 0;
   options_.sigma = raster("one.tif", small_grid(), sigma);
-  EXPECT_TRUE(std::isnan(read_survey(options_, run_.maps, 1.0)->measured[cell]));
+  EXPECT_TRUE(std::isnan(read()->measured[cell]));
 }
 
 TEST_F(SurveyTest, without_a_known_error_wants_no_raster_of_it) {
   options_.from_preprocess = true;
-  std::filesystem::create_directories(scratch_ / "out" / "survey");
+  std::filesystem::create_directories(scratch / "out" / "survey");
   std::filesystem::copy_file(raster("slide_difference.tif", small_grid(), some_change()),
-                             scratch_ / "out" / "survey" / "slide_difference.tif");
-  EXPECT_THROW(options_.find_in(scratch_ / "out"), DataError);
-  options_.find_in(scratch_ / "out", false);
+                             scratch / "out" / "survey" / "slide_difference.tif");
+  EXPECT_THROW(options_.find_in(scratch / "out"), DataError);
+  options_.find_in(scratch / "out", false);
   EXPECT_TRUE(options_.sigma.empty());
 }
 
 TEST_F(SurveyTest, refuses_to_score_when_much_changed_outside_the_slide) {
-  const auto out = scratch_ / "out";
+  const auto out = scratch / "out";
   std::filesystem::create_directories(out / "survey");
   EXPECT_FALSE(read_found_survey(out).outside_is_large) << "no survey.json";
   std::ofstream(out / "survey" / "survey.json")
@@ -301,8 +287,8 @@ TEST_F(SurveyTest, refuses_to_score_when_much_changed_outside_the_slide) {
   const auto judged = [&](std::vector<std::string> accept) {
     return test::findings_of([&] { judge_outside(found, out); }, std::move(accept), "postprocess");
   };
-  EXPECT_TRUE(test::holds(test::fault_of<DataError>([&] { judged({}); }),
-                          {"9,059 m3 rose", "accept = [\"change-outside-slide\"] in [postprocess]"}));
+  EXPECT_TRUE(holds(test::fault_of<DataError>([&] { judged({}); }),
+                    {"9,059 m3 rose", "accept = [\"change-outside-slide\"] in [postprocess]"}));
   EXPECT_TRUE(is_accepted(judged({"change-outside-slide"}), "change-outside-slide"));
   std::ofstream(out / "survey" / "survey.json") << "{\"error\": ";
   EXPECT_THROW(read_found_survey(out), DataError);
@@ -324,7 +310,7 @@ TEST_F(SurveyTest, refuses_a_change_that_carries_mass_uphill) {
   EXPECT_TRUE(judged({}).empty());
   for (double& change : survey.measured) change = -change;
   EXPECT_TRUE(
-      test::holds(test::fault_of<DataError>([&] { judged({}); }), {"accept = [\"swapped-surveys\"] in [postprocess]"}));
+      holds(test::fault_of<DataError>([&] { judged({}); }), {"accept = [\"swapped-surveys\"] in [postprocess]"}));
   EXPECT_TRUE(is_accepted(judged({"swapped-surveys"}), "swapped-surveys"));
   survey.deposit_is_change = false;
   EXPECT_TRUE(judged({}).empty());

@@ -5,30 +5,23 @@
 
 #include <set>
 
-#include "postprocess/postprocess.hpp"
 #include "postprocess/writers/job.hpp"
-#include "tests/postprocess/scene.hpp"
+#include "tests/postprocess/stage_run.hpp"
 
 namespace talus::postprocess {
 
-std::shared_ptr<Writer> profile_writer();  // of docs/how-to/extend.md
+Writer profile_writer();  // of docs/how-to/extend.md
 
 namespace {
 
 namespace fs = std::filesystem;
 
-class Outputs : public ::testing::Test {
- protected:
-  Outputs() { fs::create_directories(out_); }
-
+struct Outputs : test::StageRun {
   /// Runs the stage on `run` with more keys of [postprocess].
   void write(const talus::Run& run, const std::string& keys) {
     test::write_run(out_ / "run.h5", run);
-    StageContext context{
-        .recipe = recipe::Recipe(scratch_.write("recipe.toml", "[scene]\nname = \"small\"\n[postprocess]\n" + keys)),
-        .out = out_,
-        .command_line = "test"};
-    postprocess::run(context);
+    recipe_ = "[scene]\nname = \"small\"\n[postprocess]\n" + keys;
+    run_it();
   }
   /// Files below OUT, without run.h5.
   std::set<std::string> files() const {
@@ -40,7 +33,7 @@ class Outputs : public ::testing::Test {
   }
   static bool has_writer(const std::string& file) {
     const auto all = all_writers();
-    return std::any_of(all.begin(), all.end(), [&](const auto& writer) { return matches(writer->names(), file); });
+    return std::any_of(all.begin(), all.end(), [&](const auto& writer) { return matches(writer.names, file); });
   }
 
   /// A run with every optional output.
@@ -53,20 +46,21 @@ class Outputs : public ::testing::Test {
     return run;
   }
 
-  test::Scratch scratch_;
-  const fs::path out_ = scratch_ / "out";
   const std::string all_keys_ =
       "outputs = [\"report\", \"surface\", \"terrain\", \"points\", \"avaframe-tif\"]\n[postprocess.intensity]\n"
       "guideline = \"swiss-flood\"\n[postprocess.reach_cone]\nangle_deg = 20.0\n";
 };
 
-TEST_F(Outputs, have_unique_names_and_files_of_their_own) {
+TEST_F(Outputs, have_unique_names_and_files_of_their_own_and_patterns_do_not_reach_into_folders) {
   std::set<std::string> names, patterns;
   for (const auto& writer : all_writers()) {
-    EXPECT_TRUE(names.insert(writer->name()).second) << writer->name();
-    EXPECT_FALSE(writer->names().empty()) << writer->name();
-    for (const std::string& pattern : writer->names()) EXPECT_TRUE(patterns.insert(pattern).second) << pattern;
+    EXPECT_TRUE(names.insert(writer.name).second) << writer.name;
+    EXPECT_FALSE(writer.names.empty()) << writer.name;
+    for (const std::string& pattern : writer.names) EXPECT_TRUE(patterns.insert(pattern).second) << pattern;
   }
+  EXPECT_TRUE(matches({"maps/*.qgs"}, "maps/small.qgs"));
+  EXPECT_FALSE(matches({"maps/*.qgs"}, "maps/old/small.qgs"));
+  EXPECT_FALSE(matches({"score.json"}, "maps/score.json"));
 }
 
 TEST_F(Outputs, of_a_run_are_all_named_by_a_writer) {
@@ -80,9 +74,9 @@ TEST_F(Outputs, of_a_run_are_all_named_by_a_writer) {
 
 TEST_F(Outputs, of_an_earlier_run_that_are_no_longer_wanted_are_deleted) {
   write(everything(), all_keys_);
-  scratch_.write("out/3d/mine.pvsm", "a state of ParaView");
+  scratch.write("out/3d/mine.pvsm", "a state of ParaView");
   fs::create_directories(out_ / "3d" / "volumes");
-  scratch_.write("out/3d/volumes/flow.0000.vdb", "of an earlier version");
+  scratch.write("out/3d/volumes/flow.0000.vdb", "of an earlier version");
   write(test::small_run(), "outputs = []\n");
   const auto left = files();
   for (const char* name : {"report.html", "gauges.csv", "maps/intensity.tif", "maps/reach_cone.qml"})
@@ -95,24 +89,18 @@ TEST_F(Outputs, of_an_earlier_run_that_are_no_longer_wanted_are_deleted) {
 TEST_F(Outputs, of_the_page_on_extension_are_written) {
   const auto profile = profile_writer();
   Job job{.run = test::small_run(), .out = out_};
-  EXPECT_FALSE(profile->wanted(job));
+  EXPECT_FALSE(profile.wanted(job));
   job.options.outputs = {"profile"};
-  EXPECT_TRUE(profile->wanted(job));
-  EXPECT_THROW(profile->check(job), DataError) << "there is no thalweg";
+  EXPECT_TRUE(profile.wanted(job));
+  EXPECT_THROW(profile.check(job), DataError) << "there is no thalweg";
   const MapGrid& grid = job.run.maps.grid;
   const double y = grid.south + 1.5 * grid.cell, x = grid.west + 1.5 * grid.cell;
   job.thalweg = {.line = {{x, y}, {x + grid.cell, y}}, .distance = {0, grid.cell}, .given = true, .origin = "test"};
-  profile->check(job);
+  profile.check(job);
   const auto values = sample_along(job.thalweg, grid, job.run.maps.deposit_thickness);
-  EXPECT_EQ(profile->write(job), Files{out_ / "profile.csv"});
+  EXPECT_EQ(profile.write(job), Files{out_ / "profile.csv"});
   EXPECT_EQ(test::text_of(out_ / "profile.csv"),
             fmt::format("distance_m,deposit_m\n0.00,{:.3f}\n{:.2f},{:.3f}\n", values[0], grid.cell, values[1]));
-}
-
-TEST_F(Outputs, patterns_do_not_reach_into_folders) {
-  EXPECT_TRUE(matches({"maps/*.qgs"}, "maps/small.qgs"));
-  EXPECT_FALSE(matches({"maps/*.qgs"}, "maps/old/small.qgs"));
-  EXPECT_FALSE(matches({"score.json"}, "maps/score.json"));
 }
 
 }  // namespace

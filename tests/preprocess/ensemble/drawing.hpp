@@ -12,7 +12,6 @@
 #include "common/ensemble/options.hpp"
 #include "common/error.hpp"
 #include "preprocess/ensemble/draw.hpp"
-#include "tests/common/damage.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::test {

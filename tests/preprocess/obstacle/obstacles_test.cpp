@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/obstacle/obstacles.hpp"
 
-#include "tests/common/scratch.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
@@ -10,12 +9,7 @@ namespace {
 
 /// Ground that rises by a fifth towards the east.
 Raster tilted() {
-  const MapGrid grid{40, 30, 1000, 2000, 2, ""};
-  Raster ground{grid, {}};
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) ground.values.push_back(100 + 0.2 * grid.x(column));
-  }
-  return ground;
+  return test::raster_of({40, 30, 1000, 2000, 2, ""}, [](double x, double) { return 100 + 0.2 * x; });
 }
 
 BodySurface stood(const test::Scratch& scratch, const ObstacleOptions& o) {
@@ -23,8 +17,9 @@ BodySurface stood(const test::Scratch& scratch, const ObstacleOptions& o) {
   return read_level_set(scratch / "obstacles.vdb", o.name, {1, 1, 1});
 }
 
-TEST(Obstacles, stand_on_their_polygons_with_holes_and_follow_the_ground) {
-  const test::Scratch scratch;
+using Obstacles = test::InScratch;
+
+TEST_F(Obstacles, stand_on_their_polygons_with_holes_and_follow_the_ground) {
   ObstacleOptions o;
   o.name = "house";
   o.height = 6;
@@ -48,16 +43,14 @@ TEST(Obstacles, stand_on_their_polygons_with_holes_and_follow_the_ground) {
   EXPECT_NEAR(top_area, 160, 16);
 }
 
-TEST(Obstacles, need_a_height_and_ground_under_them) {
-  const test::Scratch scratch;
+TEST_F(Obstacles, need_a_height_and_ground_under_them) {
   ObstacleOptions o;
   o.name = "house";
   o.polygons = test::write_polygon(scratch, "house.csv", "POLYGON((1020 2020,1040 2020,1040 2030,1020 2020))");
-  EXPECT_NE(test::fault_of<DataError>([&] { stood(scratch, o); }).find("has no positive number \"height\""),
-            std::string::npos);
+  EXPECT_TRUE(test::holds(data_fault([&] { stood(scratch, o); }), {"has no positive number \"height\""}));
   o.height = 6;
   o.polygons = test::write_polygon(scratch, "off.csv", "POLYGON((900 2020,1040 2020,1040 2030,900 2020))");
-  EXPECT_NE(test::fault_of<DataError>([&] { stood(scratch, o); }).find("where there is no ground"), std::string::npos);
+  EXPECT_TRUE(test::holds(data_fault([&] { stood(scratch, o); }), {"where there is no ground"}));
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/particles/seed.hpp"
 
-#include <algorithm>
-
 #include "tests/preprocess/terrain.hpp"
 
 namespace talus::preprocess {
@@ -25,17 +23,11 @@ double volume_of_points(const SeedPoints& points) {
 }
 
 Seeding seeding(int x, int y, int z, double layer_height) {
-  Seeding s;
-  s.along_x = x;
-  s.along_y = y;
-  s.in_height = z;
-  s.layer_height = layer_height;
-  return s;
+  return {.along_x = x, .along_y = y, .in_height = z, .layer_height = layer_height};
 }
 
 TEST(seed, keeps_the_volume_whatever_the_points_per_cell) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   const Release release = random_release(test::grid_of(23, 17, 9.7), random);
   const double volume = test::volume_of(release.thickness);
   for (int x = 1; x <= 4; ++x) {
@@ -77,8 +69,7 @@ std::vector<double> volumes_by_cell(const MapGrid& grid, const SeedPoints& point
 }
 
 TEST(seed, keeps_the_volume_of_every_column) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   const MapGrid grid = test::grid_of(8, 6, 10);
   const Release release = random_release(grid, random);
   Seeding s = seeding(3, 2, 2, 4);
@@ -115,8 +106,7 @@ TEST(seed, gives_what_would_be_slivers_to_thicker_columns_beside_them) {
 
 /// A polygon's rim covers cells in part, by any share.
 TEST(seed, leaves_no_sliver_beside_a_thick_column) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   std::uniform_real_distribution<double> share(0, 1);
   for (const double thickness : {0.2, 1.5, 30.0}) {
     const MapGrid grid = test::grid_of(30, 30, 5, 0, 0);
@@ -139,7 +129,7 @@ TEST(seed, leaves_no_sliver_beside_a_thick_column) {
   }
 }
 
-TEST(seed, spaces_points_evenly) {
+TEST(seed, spaces_points_evenly_and_lays_releases_in_one_cell_on_one_another) {
   const Release release{"A", test::raster_of(test::grid_of(1, 1, 10, 0, 0), [](double, double) { return 6.0; })};
   const SeedPoints points = seed_points({release}, seeding(2, 1, 2, 4));  // 6 m / 4 m * 2 = 3 points in height
   ASSERT_EQ(points.size(), 6u);
@@ -147,14 +137,11 @@ TEST(seed, spaces_points_evenly) {
   EXPECT_EQ(points.y, std::vector<double>(6, 5.0));
   EXPECT_EQ(points.height, (std::vector<double>{1, 1, 3, 3, 5, 5}));
   EXPECT_EQ(points.volume, std::vector<double>(6, 100.0));
-}
-
-TEST(seed, lays_releases_in_one_cell_on_one_another) {
   const MapGrid grid = test::grid_of(1, 1, 10, 0, 0);
   const auto uniform = [&](double t) { return test::raster_of(grid, [=](double, double) { return t; }); };
-  const SeedPoints points = seed_points({{"A", uniform(4)}, {"B", uniform(2)}}, seeding(1, 1, 1, 4));
-  EXPECT_EQ(points.height, (std::vector<double>{2, 5}));
-  EXPECT_EQ(points.release, (std::vector<int>{0, 1}));
+  const SeedPoints laid = seed_points({{"A", uniform(4)}, {"B", uniform(2)}}, seeding(1, 1, 1, 4));
+  EXPECT_EQ(laid.height, (std::vector<double>{2, 5}));
+  EXPECT_EQ(laid.release, (std::vector<int>{0, 1}));
 }
 
 TEST(seed, shifts_points_by_no_more_than_the_jitter_and_each_time_alike) {

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The computed sliding surface against closed forms, and what must hold on any ground.
 #include "preprocess/release/sliding_surface.hpp"
-#include "common/map/polygon.hpp"
-
-#include <numbers>
 
 #include "tests/preprocess/outlines.hpp"
 #include "tests/preprocess/terrain.hpp"
@@ -97,15 +94,13 @@ TEST(sliding_surface, of_an_ellipse_does_not_depend_on_how_the_grid_lies) {
 Raster turned(const Raster& raster) {
   Raster result = raster;
   const int n = raster.grid.columns;
-  for (int row = 0; row < n; ++row) {
+  for (int row = 0; row < n; ++row)
     for (int column = 0; column < n; ++column) result.at(n - 1 - row, column) = raster.at(column, row);
-  }
   return result;
 }
 
 TEST(sliding_surface, turns_with_the_ground) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   const MapGrid grid = grid_of(60, 60, 10, 0, 0);
   const Raster before = raster_of(grid, Hills(grid, random)), before_turned = turned(before);
   const Ellipse rim{310, 290, 210, 130, 0.6};
@@ -118,8 +113,7 @@ TEST(sliding_surface, turns_with_the_ground) {
 }
 
 TEST(sliding_surface, meets_depth_and_volume_on_any_ground_and_stays_below_it) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   const MapGrid grid = grid_of(60, 50, 10);
   std::normal_distribution<double> noise(0, 0.3);
   Hills hills(grid, random);
@@ -235,8 +229,7 @@ std::vector<DepthPoint> points_of(const Bowl& bowl, int count, double error, std
 }
 
 TEST(sliding_surface, through_points_of_a_paraboloid_is_that_paraboloid) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   const MapGrid grid = grid_of(60, 60, 5);
   const Bowl bowl = bowl_on(grid, 100, 100, 0);
   const Raster before = plane(grid);
@@ -252,8 +245,7 @@ TEST(sliding_surface, through_points_of_a_paraboloid_is_that_paraboloid) {
 }
 
 TEST(sliding_surface, meets_points_exactly_or_within_their_errors) {
-  TALUS_SEEDED(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
   const MapGrid grid = grid_of(80, 80, 5);
   const Bowl bowl = bowl_on(grid, 150, 100, 0.5);
   const Raster before = plane(grid);

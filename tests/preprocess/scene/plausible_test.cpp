@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is only implausible is refused by name, and goes on where the recipe insists.
+// What is only implausible is refused by name, and goes on where the recipe insists; growth and factors of sources.
+#include <numbers>
+
+#include "common/domain/domain.hpp"
 #include "common/gis/crs.hpp"
 #include "data_samples/terrains.hpp"
-#include "preprocess/particles/coarseness.hpp"
+#include "preprocess/particles/seed.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/preprocess/scene.hpp"
 
@@ -11,8 +14,174 @@ namespace talus::preprocess {
 namespace {
 
 using test::grid_of;
+using test::holds;
 using test::raster_of;
+using test::Scene;
 using test::Scratch;
+
+/// A rectangle of 60 x 75 m.
+std::filesystem::path rectangle(const Scene& scene) {
+  const double x = scene.grid.west + 123, y = scene.grid.south + 101;
+  return test::write_polygon(scene.scratch, "outline.csv", test::rectangle(x, y, x + 60, y + 75));
+}
+
+/// Of that rectangle grown by a distance, corners round to a thousandth of it.
+double area_grown(double by) {
+  return by >= 0 ? 60 * 75 + 2 * 135 * by + std::numbers::pi * by * by : (60 + 2 * by) * (75 + 2 * by);
+}
+
+using grow = test::WithScene;
+
+TEST_F(grow, a_source_by_its_outline) {
+  for (const double by : {0.0, 12.0, -12.0}) {
+    Scene scene;
+    scene.options.source.polygon = rectangle(scene);
+    Raster after = scene.before;
+    for (double& z : after.values) z -= 4;  // lowered everywhere: the outline alone says what counts
+    scene.rewrite_after(after);
+    scene.options.source.grow = by;
+    EXPECT_NEAR(scene.prepare().total.volume / (4 * area_grown(by)), 1, 1e-3) << by;
+    scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", after);
+    scene.options.after_dem.clear();
+    EXPECT_NEAR(scene.prepare().total.volume / (4 * area_grown(by)), 1, 1e-3) << by;
+  }
+}
+
+TEST_F(grow, a_computed_sliding_surface_reaches_further_under_a_wider_outline) {
+  options.after_dem.clear();
+  options.source.polygon = rectangle(*this);
+  options.source.sliding_surface.depth = 10;
+  const double alone = prepare().total.projected_area;
+  options.source.grow = 15;
+  const Prepared wider = prepare();
+  EXPECT_GT(wider.total.projected_area, 1.4 * alone);
+  EXPECT_NEAR(wider.sliding_surface->depth, 10, 1e-6);
+}
+
+TEST_F(grow, a_release_by_polygons) {
+  ReleaseOptions& release = as_release();
+  release.polygons = rectangle(*this);
+  release.thickness = 3;
+  release.grow = -10;
+  EXPECT_NEAR(prepare().total.volume / (3 * area_grown(-10)), 1, 1e-9);
+  release.grow = -40;
+  EXPECT_TRUE(holds(data_fault(), {"nothing is left of it with grow_m = -40"}));
+}
+
+TEST_F(grow, what_has_no_outline_is_refused) {
+  options.source.grow = 5;
+  EXPECT_TRUE(holds(test::faults_of(options), {"source.grow_m is given without source.polygon"}));
+  options.source.grow = 0;
+  ReleaseOptions& release = as_release();
+  release.thickness_raster = test::write(scratch, "bowl.tif", bowl);
+  release.grow = 5;
+  EXPECT_TRUE(holds(test::faults_of(options), {"release 1: grow_m is given without polygons"}));
+}
+
+TEST(survey_memory, gives_what_a_comparison_gives_and_tells_other_surveys) {
+  const test::Seeded random;
+  Scene scene(random.number);
+  SurveyMemory memory;
+  read_scene(scene.options, &memory);
+  for (const double threshold : {0.5, 3.0}) {
+    scene.options.source.threshold = threshold;
+    const SceneRasters kept = read_scene(scene.options, &memory), fresh = read_scene(scene.options);
+    EXPECT_EQ(kept.bed.values, fresh.bed.values);
+    EXPECT_EQ(kept.releases[0].thickness.values, fresh.releases[0].thickness.values);
+    EXPECT_EQ(kept.slide->sigma.values, fresh.slide->sigma.values);
+  }
+  scene.options.difference.sigma = 0.5;  // another error: the kept survey is not taken
+  EXPECT_EQ(read_scene(scene.options, &memory).survey->errors.typical(), 0.5);
+}
+
+/// Volume of the points of each cell, and its moment above the bed: [rows * columns] each, [m3] and [m4].
+struct Columns {
+  std::vector<double> volume, moment;
+  explicit Columns(const Domain& d) : volume(d.grid.count(), 0.0), moment(d.grid.count(), 0.0) {
+    for (std::size_t p = 0; p < d.points.size(); ++p) {
+      const auto cell = d.grid.index(static_cast<int>((d.points.x[p] - d.grid.west) / d.grid.cell),
+                                     static_cast<int>((d.points.y[p] - d.grid.south) / d.grid.cell));
+      volume[cell] += d.points.volume[p];
+      moment[cell] += d.points.volume[p] * d.points.height[p];
+    }
+  }
+};
+
+/// Rasters to rounding of elevations around 1,000 m; columns of points to that of sums over some ten of them.
+void expect_same_mass(const Domain& a, const Domain& b) {
+  EXPECT_EQ(a.terrain.values, b.terrain.values);
+  test::expect_near(a.before.values, b.before.values, 1e-9);
+  test::expect_near(a.release_thickness.values, b.release_thickness.values, 1e-9);
+  const Columns of_a(a), of_b(b);
+  test::expect_near(of_a.volume, of_b.volume, 1e-8);
+  test::expect_near(of_a.moment, of_b.moment, 1e-6);
+}
+
+void expect_scaled_is_made(Scene& scene, double factor) {
+  Domain scaled = scene.prepare().domain;
+  scale_release(scaled, factor);
+  scene.options.thickness_factor = factor;
+  expect_same_mass(scaled, scene.prepare().domain);
+}
+
+using thickness_factor = test::WithScene;
+
+TEST_F(thickness_factor, of_a_source_between_two_models_is_that_of_its_domain) {
+  const test::Seeded random;
+  for (const double factor : {0.4, 1.7}) {
+    Scene scene(random.number);
+    expect_scaled_is_made(scene, factor);
+  }
+}
+
+TEST_F(thickness_factor, of_releases_over_erodible_ground_leaves_the_ground_alone) {
+  const test::Seeded random;
+  Scene scene(random.number);
+  scene.as_release().thickness_raster = test::write(scene.scratch, "bowl.tif", scene.bowl);
+  scene.options.release.emplace_back(scene.options.release[0]);  // a second one lies on the first
+  ErodibleOptions& layer = scene.options.erodible.emplace_back();
+  const double x = scene.grid.west, y = scene.grid.south;
+  layer.polygons = test::write_polygon(scene.scratch, "ground.csv", test::rectangle(x + 83, y + 101, x + 180, y + 201));
+  layer.thickness = 2.5;
+  expect_scaled_is_made(scene, 1.3);
+  Domain base = scene.prepare().domain, scaled = base;
+  scale_release(scaled, 2);
+  for (std::size_t p = 0; p < base.points.size(); ++p) {
+    if (base.points.release[p] >= base.erodible) continue;
+    EXPECT_EQ(scaled.points.height[p], base.points.height[p]);
+    EXPECT_EQ(scaled.points.volume[p], base.points.volume[p]);
+  }
+}
+
+TEST_F(thickness_factor, stretches_every_point_where_as_many_are_seeded) {
+  options.grid.layer_height = 2;
+  Domain scaled = prepare().domain;
+  scale_release(scaled, 1.5);
+  options.thickness_factor = 1.5;
+  options.grid.layer_height = 3;
+  const Domain made = prepare().domain;
+  test::expect_near(scaled.points.height, made.points.height, 1e-9);
+  test::expect_near(scaled.points.volume, made.points.volume, 1e-9);
+  EXPECT_EQ(scaled.points.x, made.points.x);
+}
+
+TEST_F(thickness_factor, of_a_box_scales_its_height_from_the_ground) {
+  Options o;
+  o.grid.spacing = 1;
+  o.laboratory.columns = o.laboratory.rows = 12;
+  o.box.push_back({"", 3.5, 6.5, 4, 6, 0, 2.5});
+  options = o;
+  expect_scaled_is_made(*this, 0.8);
+  EXPECT_NEAR(prepare().total.volume, 3 * 2 * 2.5 * 0.8, 1e-12);
+  options.box[0].bottom = 1;
+  EXPECT_TRUE(holds(recipe_fault(), {"thickness_factor = 0.8 with a box whose bottom lies above the ground"}));
+}
+
+TEST_F(thickness_factor, that_is_not_positive_is_refused) {
+  Domain domain;
+  for (const double factor : {0.0, -1.0, std::nan(""), double{INFINITY}})
+    EXPECT_THROW(scale_release(domain, factor), std::logic_error);
+}
 
 /// The sample valley, its heights divided by `metres`, on a map in `crs`.
 struct Valley {
@@ -28,8 +197,8 @@ struct Valley {
         raster.grid.south = 5000000;
       }
     }
-    options.before_dem = test::write(scratch, "before.tif", sample.rasters.at(0).second);
-    options.after_dem = test::write(scratch, "after.tif", sample.rasters.at(1).second);
+    options = test::two_models(test::write(scratch, "before.tif", sample.rasters.at(0).second),
+                               test::write(scratch, "after.tif", sample.rasters.at(1).second));
   }
   std::string fault() const {
     return test::fault_of<DataError>([&] { prepare(options, Points::counted); });
@@ -40,31 +209,25 @@ TEST(plausible, surveys_in_the_wrong_order_are_refused_and_accepted_by_name) {
   Valley valley;
   EXPECT_EQ(valley.fault(), "");
   std::swap(valley.options.before_dem, valley.options.after_dem);
-  EXPECT_NE(valley.fault().find("higher than what fell"), std::string::npos) << valley.fault();
-  EXPECT_NE(valley.fault().find("accept = [\"swapped-surveys\"] in [preprocess]"), std::string::npos);
+  EXPECT_TRUE(holds(valley.fault(), {"higher than what fell", "accept = [\"swapped-surveys\"] in [preprocess]"}));
   valley.options.accept = {"false-lengths"};
   EXPECT_NE(valley.fault(), "") << "another name is no acceptance";
   valley.options.accept = {"swapped-surveys"};
   const Prepared prepared = prepare(valley.options, Points::counted);
   ASSERT_TRUE(is_accepted(prepared.domain.findings, "swapped-surveys"));
-  EXPECT_NE(accepted_line(prepared.domain.findings).find("before.tif"), std::string::npos);
+  EXPECT_TRUE(holds(accepted_line(prepared.domain.findings), {"before.tif"}));
 }
 
-TEST(plausible, all_that_is_implausible_is_said_at_once) {
+TEST(plausible, all_that_is_implausible_is_said_at_once_and_nothing_that_the_recipe_does_already) {
   Valley valley(0.3048, "EPSG:3857");
   std::swap(valley.options.before_dem, valley.options.after_dem);
   const std::string fault = valley.fault();
   for (const std::string name : {"swapped-surveys", "false-lengths", "steep-ground"})
-    EXPECT_NE(fault.find("accept = [\"" + name + "\"] in [preprocess]"), std::string::npos) << name << ": " << fault;
-}
-
-TEST(plausible, nothing_is_advised_that_the_recipe_does_already) {
-  Valley valley(0.3048, "EPSG:3857");
+    EXPECT_TRUE(holds(fault, {"accept = [\"" + name + "\"] in [preprocess]"})) << name << ": " << fault;
+  std::swap(valley.options.before_dem, valley.options.after_dem);
   valley.options.working_crs = "EPSG:3857";
   valley.options.vertical_unit = VerticalUnit::metre;
-  const std::string fault = valley.fault();
-  EXPECT_NE(fault.find("Name another working_crs"), std::string::npos) << fault;
-  EXPECT_NE(fault.find("The recipe says metres"), std::string::npos) << fault;
+  EXPECT_TRUE(holds(valley.fault(), {"Name another working_crs", "The recipe says metres"}));
 }
 
 /// A scar whose deposit the river took: swapped, mass comes from nowhere.
@@ -80,34 +243,30 @@ TEST(plausible, more_rise_than_any_fall_gives_is_refused) {
                     const double s = std::hypot(x - grid.west - 300, y - grid.south - 500);
                     return ground(x, y) - 12 * std::max(0.0, 1 - r / 80) + 3 * std::max(0.0, 1 - s / 30);
                   }));
-  const std::string fault = test::fault_of<DataError>([&] { prepare(options, Points::counted); });
-  EXPECT_NE(fault.find("times as much rose as fell"), std::string::npos) << fault;
+  EXPECT_TRUE(
+      holds(test::fault_of<DataError>([&] { prepare(options, Points::counted); }), {"times as much rose as fell"}));
 }
 
 TEST(plausible, a_map_in_web_mercator_is_refused_and_reprojected_it_is_not) {
   Valley valley(1, "EPSG:3857");
-  EXPECT_NE(valley.fault().find("accept = [\"false-lengths\"]"), std::string::npos) << valley.fault();
-  EXPECT_NE(valley.fault().find("working_crs = \"utm\""), std::string::npos) << valley.fault();
+  EXPECT_TRUE(holds(valley.fault(), {"accept = [\"false-lengths\"]", "working_crs = \"utm\""}));
   valley.options.working_crs = "utm";
   EXPECT_EQ(valley.fault(), "") << "what it says helps";
 }
 
-TEST(plausible, heights_in_feet_that_no_file_declares_are_refused) {
+TEST(plausible, heights_in_feet_that_no_file_declares_are_refused_without_a_second_survey_too) {
   Valley valley(0.3048);
-  EXPECT_NE(valley.fault().find("accept = [\"steep-ground\"]"), std::string::npos) << valley.fault();
-  EXPECT_NE(valley.fault().find("vertical_unit = \"foot\""), std::string::npos) << valley.fault();
+  EXPECT_TRUE(holds(valley.fault(), {"accept = [\"steep-ground\"]", "vertical_unit = \"foot\""}));
   valley.options.vertical_unit = VerticalUnit::foot;
   EXPECT_EQ(valley.fault(), "") << "what it says helps";
   valley.options.vertical_unit = VerticalUnit::metre;
   valley.options.accept = {"steep-ground"};
   EXPECT_EQ(valley.fault(), "");
-}
-
-TEST(plausible, heights_are_looked_at_without_a_second_survey_too) {
-  Valley valley(0.3048);
+  valley.options.accept.clear();
+  valley.options.vertical_unit = {};
   valley.options.sliding_surface = valley.options.after_dem;
   valley.options.after_dem.clear();
-  EXPECT_NE(valley.fault().find("accept = [\"steep-ground\"]"), std::string::npos) << valley.fault();
+  EXPECT_TRUE(holds(valley.fault(), {"accept = [\"steep-ground\"]"}));
 }
 
 TEST(plausible, a_release_of_few_cells_is_warned_of_with_numbers_that_help) {
@@ -121,28 +280,24 @@ TEST(plausible, a_release_of_few_cells_is_warned_of_with_numbers_that_help) {
     const auto found = test::messages_of([&] { warn_of_coarseness(thickness, layers, points, grid); });
     return found.empty() ? "" : found.at(0);
   };
-  const std::string coarse = said(release(10), 3, 288, {});
-  EXPECT_NE(coarse.find("6 cells of 10 m across"), std::string::npos) << coarse;
-  EXPECT_NE(coarse.find("put spacing_m = 7.5 into"), std::string::npos) << coarse;
+  EXPECT_TRUE(holds(said(release(10), 3, 288, {}), {"6 cells of 10 m across", "put spacing_m = 7.5 into"}));
   EXPECT_EQ(said(release(5), 3, 2304, {}), "") << "finer than it asks for";
   GridOptions given;
   given.layer_height = 5;
   const std::string thin = said(release(5), 5, 1000, given);
-  EXPECT_NE(thin.find("put layer_height_m = 3 into"), std::string::npos) << "1.2 layers over the thickness: " << thin;
+  EXPECT_TRUE(holds(thin, {"put layer_height_m = 3 into"})) << "1.2 layers over the thickness: " << thin;
   EXPECT_EQ(said(raster_of(grid_of(9, 9, 10), [](double, double) { return 0.0; }), 3, 0, {}), "");
 }
 
 TEST(plausible, accept_is_read_as_written_and_knows_its_names) {
-  Options options;
-  options.before_dem = "/before.tif";
-  options.after_dem = "/after.tif";
+  Options options = test::two_models("/before.tif", "/after.tif");
   options.accept = {"swapped-surveys", "steep-ground"};
   test::expect_read_as_written(options);
   const Scratch scratch;
   const recipe::Recipe recipe(scratch.write(
       "recipe.toml", "[preprocess]\nbefore_dem = \"b.tif\"\nafter_dem = \"a.tif\"\naccept = [\"swaped-surveys\"]\n"));
-  const std::string fault = test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); });
-  EXPECT_NE(fault.find("Did you mean \"swapped-surveys\"?"), std::string::npos) << fault;
+  EXPECT_TRUE(holds(test::fault_of<RecipeError>([&] { recipe.read<Options>("preprocess"); }),
+                    {"Did you mean \"swapped-surveys\"?"}));
 }
 
 }  // namespace

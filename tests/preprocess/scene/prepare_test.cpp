@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/scene/prepare.hpp"
 
-#include "common/map/slope.hpp"
-#include "common/map/sum.hpp"
+#include "common/map/raster.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/terrain/geo_input.hpp"
 #include "tests/preprocess/scene.hpp"
@@ -11,41 +10,30 @@
 namespace talus::preprocess {
 namespace {
 
+using test::expect_near;
+using test::holds;
 using test::Scene;
 using test::volume_of_points;
 
-void expect_near(const Raster& a, const Raster& b, double tolerance) {
-  ASSERT_EQ(a.values.size(), b.values.size());
-  for (std::size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(a.values[i], b.values[i], tolerance);
-}
-
-TEST(prepare, finds_the_source_between_two_models) {
-  TALUS_SEEDED(seed);
-  Scene scene(seed);
+TEST(prepare, finds_the_source_between_two_models_and_leaves_the_deposit_out_of_the_bed) {
+  const test::Seeded random;
+  Scene scene(random.number);
   const Prepared prepared = scene.prepare();
-  expect_near(prepared.domain.release_thickness, scene.bowl, 1e-9);
+  expect_near(prepared.domain.release_thickness.values, scene.bowl.values, 1e-9);
   EXPECT_NEAR(prepared.total.volume / test::volume_of(scene.bowl), 1, 1e-12);
   EXPECT_NEAR(volume_of_points(prepared) / prepared.total.volume, 1, 1e-12);
   EXPECT_EQ(prepared.domain.release_names, std::vector<std::string>{"source"});
-}
-
-TEST(prepare, takes_out_the_lowering_and_leaves_the_deposit_out_of_the_bed) {
-  TALUS_SEEDED(seed);
-  Scene scene(seed);
-  const Domain domain = scene.prepare().domain;
-  expect_near(domain.before, scene.before, 0);
-  for (std::size_t i = 0; i < domain.terrain.values.size(); ++i) {
-    ASSERT_NEAR(domain.terrain.values[i], scene.before.values[i] - scene.bowl.values[i], 1e-9);
-  }
+  const Domain& domain = prepared.domain;
+  EXPECT_EQ(domain.before.values, scene.before.values);
+  expect_near(domain.terrain.values, test::difference(scene.before, scene.bowl).values, 1e-9);
 }
 
 TEST(prepare, slides_on_the_sliding_surface_and_follows_it_to_its_rim) {
-  TALUS_SEEDED(seed);
-  Scene scene(seed);
+  const test::Seeded random;
+  Scene scene(random.number);
   Raster surface = scene.before;
-  for (std::size_t i = 0; i < surface.values.size(); ++i) {
+  for (std::size_t i = 0; i < surface.values.size(); ++i)
     surface.values[i] = scene.bowl.values[i] > 0 ? surface.values[i] - scene.bowl.values[i] : std::nan("");
-  }
   scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", surface);
   scene.options.after_dem.clear();
   scene.options.source.threshold = 5;  // only says which region: its rim is thinner
@@ -58,8 +46,7 @@ TEST(prepare, counts_cells_on_a_source_polygon_by_their_covered_part) {
   Scene scene;
   const double x = scene.grid.west + 83, y = scene.grid.south + 101;
   scene.options.source.polygon =
-      test::write_polygon(scene.scratch, "source.csv",
-                          fmt::format("POLYGON(({0} {1},{2} {1},{2} {3},{0} {3},{0} {1}))", x, y, x + 60, y + 75));
+      test::write_polygon(scene.scratch, "source.csv", test::rectangle(x, y, x + 60, y + 75));
   Raster after = scene.before;
   for (double& z : after.values) z -= 4;  // lowered everywhere: the polygon alone says what counts
   scene.rewrite_after(after);
@@ -78,30 +65,21 @@ TEST(prepare, takes_the_region_that_holds_the_seed_point) {
   EXPECT_NEAR(scene.prepare().total.volume, 300, 1e-6);
 }
 
-TEST(prepare, lays_releases_onto_the_base) {
-  TALUS_SEEDED(seed);
-  Scene scene(seed);
-  scene.as_release().thickness_raster = test::write(scene.scratch, "release.tif", scene.bowl);
-  const Prepared prepared = scene.prepare();
-  expect_near(prepared.domain.terrain, scene.before, 0);
-  for (std::size_t i = 0; i < scene.bowl.values.size(); ++i) {
-    ASSERT_NEAR(prepared.domain.before.values[i], scene.before.values[i] + scene.bowl.values[i], 1e-9);
-  }
-  EXPECT_NEAR(volume_of_points(prepared) / test::volume_of(scene.bowl), 1, 1e-12);
-  EXPECT_EQ(prepared.domain.release_names, std::vector<std::string>{"release-1"});
-}
-
-TEST(prepare, turns_slope_normal_thickness_into_vertical) {
-  TALUS_SEEDED(seed);
-  Scene scene(seed);
+TEST(prepare, lays_releases_onto_the_base_and_turns_slope_normal_thickness_into_vertical) {
+  const test::Seeded random;
+  Scene scene(random.number);
   ReleaseOptions& release = scene.as_release();
   release.thickness_raster = test::write(scene.scratch, "release.tif", scene.bowl);
-  release.direction = Direction::slope_normal;
   const Prepared prepared = scene.prepare();
+  EXPECT_EQ(prepared.domain.terrain.values, scene.before.values);
+  expect_near(test::difference(prepared.domain.before, scene.before).values, scene.bowl.values, 1e-9);
+  EXPECT_NEAR(volume_of_points(prepared) / test::volume_of(scene.bowl), 1, 1e-12);
+  EXPECT_EQ(prepared.domain.release_names, std::vector<std::string>{"release-1"});
+  release.direction = Direction::slope_normal;
+  const Prepared turned = scene.prepare();
   const auto cosine = slope_cosine(scene.before);
-  for (std::size_t i = 0; i < cosine.size(); ++i) {
-    ASSERT_NEAR(prepared.domain.release_thickness.values[i], scene.bowl.values[i] / cosine[i], 1e-9);
-  }
+  for (std::size_t i = 0; i < cosine.size(); ++i)
+    ASSERT_NEAR(turned.domain.release_thickness.values[i], scene.bowl.values[i] / cosine[i], 1e-9);
 }
 
 TEST(prepare, gives_polygons_their_area_times_thickness) {
@@ -128,9 +106,8 @@ TEST(prepare, keeps_several_releases_apart) {
   second.thickness_raster = test::write(scene.scratch, "heap.tif", scene.heap);
   const Prepared prepared = scene.prepare();
   Sum volumes[2];
-  for (std::size_t p = 0; p < prepared.domain.points.size(); ++p) {
+  for (std::size_t p = 0; p < prepared.domain.points.size(); ++p)
     volumes[prepared.domain.points.release[p]].add(prepared.domain.points.volume[p]);
-  }
   EXPECT_NEAR(volumes[0].value() / test::volume_of(scene.bowl), 1, 1e-12);
   EXPECT_NEAR(volumes[1].value() / test::volume_of(scene.heap), 1, 1e-12);
   EXPECT_NEAR(prepared.by_release[1].second.volume / test::volume_of(scene.heap), 1, 1e-12);
@@ -155,9 +132,8 @@ TEST(prepare, takes_erodible_ground_out_of_the_bed_and_fills_it_with_points) {
   }
   EXPECT_NEAR(lowered * 100 / test::volume_of(scene.heap), 1, 1e-6);
   Sum ground;
-  for (std::size_t p = 0; p < d.points.size(); ++p) {
+  for (std::size_t p = 0; p < d.points.size(); ++p)
     if (d.points.release[p] == 0) ground.add(d.points.volume[p]);
-  }
   EXPECT_NEAR(ground.value() / test::volume_of(scene.heap), 1, 1e-12);
   write_domain(scene.scratch / "domain.vdb", d);
   EXPECT_EQ(read_domain(scene.scratch / "domain.vdb").erodible, 1);
@@ -179,12 +155,11 @@ TEST(prepare, finds_erodible_ground_where_it_went_down_outside_the_source) {
   scene.options.erodible.emplace_back().lowering = true;
   const Domain d = scene.prepare().domain;
   Sum ground;
-  for (std::size_t p = 0; p < d.points.size(); ++p) {
+  for (std::size_t p = 0; p < d.points.size(); ++p)
     if (d.points.release[p] < d.erodible) ground.add(d.points.volume[p]);
-  }
   EXPECT_NEAR(ground.value() / volume, 1, 1e-5);
   scene.rewrite_after(scene.after);
-  EXPECT_NE(scene.data_fault().find("nothing lies lower outside the source"), std::string::npos);
+  EXPECT_TRUE(holds(scene.data_fault(), {"nothing lies lower outside the source"}));
 }
 
 TEST(prepare, brings_rasters_of_the_bed_onto_the_grid) {
@@ -196,11 +171,9 @@ TEST(prepare, brings_rasters_of_the_bed_onto_the_grid) {
   const Domain d = scene.prepare().domain;
   ASSERT_EQ(d.bed.size(), 1u);
   EXPECT_EQ(d.bed[0].first, "friction_angle_deg");
-  for (int row = 1; row + 1 < d.grid.rows; ++row) {
-    for (int column = 1; column + 1 < d.grid.columns; ++column) {
+  for (int row = 1; row + 1 < d.grid.rows; ++row)
+    for (int column = 1; column + 1 < d.grid.columns; ++column)
       EXPECT_NEAR(d.bed[0].second.at(column, row), 10 + 0.02 * (d.grid.x(column) - coarse.west), 1e-4);
-    }
-  }
   write_domain(scene.scratch / "domain.vdb", d);
   const Domain back = read_domain(scene.scratch / "domain.vdb");
   ASSERT_EQ(back.bed.size(), 1u);
@@ -208,12 +181,11 @@ TEST(prepare, brings_rasters_of_the_bed_onto_the_grid) {
 }
 
 TEST(prepare, keeps_the_volume_of_a_release_on_another_grid) {
-  TALUS_SEEDED(seed);
-  Scene scene(seed);
-  std::mt19937 random(seed);
+  test::Seeded random;
+  Scene scene(random.number);
   std::uniform_real_distribution<double> part(0, 1);
   for (int trial = 0; trial < 8; ++trial) {
-    Scene other(seed);
+    Scene other(random.number);
     const MapGrid grid = test::grid_of(17, 13, 3 + 9 * part(random), other.grid.west + 20 + 50 * part(random),
                                        other.grid.south + 20 + 50 * part(random));
     const Raster thickness = test::raster_of(grid, [&](double, double) { return 5 * part(random); });
@@ -247,11 +219,16 @@ TEST(prepare, says_both_conventions) {
                                       "  thickness at most 3.00 m vertical, 1.50 m slope-normal"}));
 }
 
-TEST(prepare, counts_without_seeding) {
+TEST(prepare, counts_without_seeding_and_warns_of_more_points_than_anybody_waits_for) {
   Scene scene;
   const Prepared counted = preprocess::prepare(scene.options, Points::counted), seeded = scene.prepare();
   EXPECT_EQ(counted.domain.points.size(), 0u);
   EXPECT_EQ(counted.point_count, seeded.domain.points.size());
+  scene.options.grid.layer_height = 3e-4;
+  testing::internal::CaptureStderr();
+  prepare(scene.options, Points::counted);
+  EXPECT_TRUE(holds(testing::internal::GetCapturedStderr(),
+                    {"material points (to make so many takes long, and the solver needs about"}));
 }
 
 TEST(prepare, writes_a_domain_that_reads_back) {
@@ -273,7 +250,7 @@ TEST(prepare, leaves_the_ground_bare_where_nothing_is_released) {
   scene.as_release();
   scene.options.release.clear();
   scene.options.no_release = true;
-  EXPECT_NE(test::faults_of(scene.options).find("no_release = true without grid.layer_height_m"), std::string::npos);
+  EXPECT_TRUE(holds(test::faults_of(scene.options), {"no_release = true without grid.layer_height_m"}));
   scene.options.grid.layer_height = 2;
   EXPECT_EQ(test::faults_of(scene.options), "");
   test::expect_read_as_written(scene.options);
@@ -288,31 +265,16 @@ TEST(prepare, leaves_the_ground_bare_where_nothing_is_released) {
   EXPECT_EQ(back.layer_height, 2);
 }
 
-TEST(prepare, refuses_no_release_beside_one) {
+TEST(prepare, refuses_no_release_beside_one_and_more_points_than_can_be_numbered) {
   Scene scene;
   scene.options.no_release = true;
   scene.options.grid.layer_height = 2;
-  EXPECT_NE(test::faults_of(scene.options).find("no_release = true beside before_dem"), std::string::npos);
-}
-
-TEST(prepare, refuses_more_points_than_can_be_numbered) {
-  Scene scene;
+  EXPECT_TRUE(holds(test::faults_of(scene.options), {"no_release = true beside before_dem"}));
+  scene.options.no_release = false;
   scene.options.grid.layer_height = 1e-6;
   scene.options.grid.points_per_cell = {64, 64, 64};
-  EXPECT_NE(scene.recipe_fault().find(
-                "material points (points are numbered in 32 bits). Take a larger layer_height_m or spacing_m, or "
-                "fewer points_per_cell than [64, 64, 64]"),
-            std::string::npos);
-}
-
-TEST(prepare, warns_of_more_points_than_anybody_waits_for) {
-  Scene scene;
-  scene.options.grid.layer_height = 3e-4;
-  testing::internal::CaptureStderr();
-  prepare(scene.options, Points::counted);
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("material points (to make so many takes long, and the solver needs about"), std::string::npos)
-      << said;
+  EXPECT_TRUE(holds(scene.recipe_fault(), {"material points (points are numbered in 32 bits). Take a larger "
+                                           "layer_height_m or spacing_m, or fewer points_per_cell than [64, 64, 64]"}));
 }
 
 }  // namespace

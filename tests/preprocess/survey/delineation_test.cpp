@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which changed ground belongs to a slide: made ones with split deposits, neighbours and noise, and all pairs of
 // surveys at hand.
-
+#include "preprocess/survey/patches.hpp"
 #include "tests/preprocess/scene.hpp"
 #include "tests/preprocess/survey_data.hpp"
 
@@ -12,6 +12,56 @@ namespace {
 using test::grid_of;
 using test::raster_of;
 using test::Scratch;
+
+constexpr int width = 60, height = 50;
+const MapGrid grid = test::grid_of(width, height, 5);
+
+/// A slope and its noisy repeat, raised by 5 m in a window.
+std::vector<Patch> raised(const CellWindow& w, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 0.1);
+  Elevation before, after;
+  before.raster = test::raster_of(grid, [](double x, double y) { return 0.3 * (x - 500000) - 0.2 * (y - 5100000); });
+  after.raster = before.raster;
+  for (double& z : after.raster.values) z += noise(random);
+  for (int row = w.row; row < w.row + w.rows; ++row)
+    for (int column = w.column; column < w.column + w.columns; ++column) after.raster.at(column, row) += 5;
+  return patches_of(before, after, grid);
+}
+
+/// The change is out, what is further than four cells from it stays: three cells are left out around it, and noise at
+/// its side may widen it by one.
+void expect_left_out(const CellWindow& w) {
+  std::vector<Patch> patches = raised(w, 1);
+  leave_out_changed(patches, {});
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      const int far =
+          std::max({w.column - column, column - (w.column + w.columns - 1), w.row - row, row - (w.row + w.rows - 1)});
+      const std::size_t i = grid.index(column, row);
+      if (far > 0 && far <= 4) continue;
+      EXPECT_EQ(patches[0].unchanged[i] + patches[0].stable[i], far > 0 ? 2 : 0) << column << ", " << row;
+    }
+}
+
+/// Two cells deep and fifteen along: a change, though those of its cells that are not at the edge are too few for one.
+TEST(changed_cells, are_left_out_inside_the_map_at_its_edge_and_in_its_corners) {
+  expect_left_out({20, 20, 8, 8});
+  expect_left_out({20, 0, 15, 2});
+  expect_left_out({20, height - 2, 15, 2});
+  expect_left_out({0, 20, 2, 15});
+  expect_left_out({width - 2, 20, 2, 15});
+  expect_left_out({0, 0, 5, 5});
+  expect_left_out({width - 5, height - 5, 5, 5});
+}
+
+TEST(changed_cells, too_few_to_be_more_than_noise_stay) {
+  for (const CellWindow& w : {CellWindow{20, 20, 3, 3}, {0, 0, 3, 3}, {30, 0, 6, 2}}) {
+    std::vector<Patch> patches = raised(w, 2);
+    leave_out_changed(patches, {});
+    EXPECT_EQ(std::count(patches[0].unchanged.begin(), patches[0].unchanged.end(), 1), width * height);
+  }
+}
 
 /// A heap, or a scar where its height is negative: a paraboloid.
 struct Cap {
@@ -44,8 +94,8 @@ struct MadeSlide {
         return z;
       });
     };
-    options.before_dem = test::write(scratch, "before.tif", surface({}));
-    options.after_dem = test::write(scratch, "after.tif", surface(caps));
+    const auto before = test::write(scratch, "before.tif", surface({}));
+    options = test::two_models(before, test::write(scratch, "after.tif", surface(caps)));
   }
 
   double volume(const Cap& cap) const {
@@ -58,22 +108,18 @@ struct MadeSlide {
 double deposit_of(const SurveyedSlide& slide) { return slide.volumes.at(1).volume.volume; }
 
 // 2 %: the rim thinner than threshold_m, which is (0.5 / 6)^2 of a paraboloid, and as much for the cells' size.
-TEST(delineation, a_far_lobe_down_the_valley_belongs_to_the_slide) {
-  const MadeSlide made({}, {scar, near_lobe, far_lobe});
+TEST(delineation, a_far_lobe_down_the_valley_belongs_to_the_slide_unless_the_gap_is_longer_than_allowed) {
+  MadeSlide made({}, {scar, near_lobe, far_lobe});
   const SurveyedSlide slide = made.slide();
   EXPECT_NEAR(deposit_of(slide) / (made.volume(near_lobe) + made.volume(far_lobe)), 1, 0.02);
   EXPECT_EQ(slide.outside.rise, 0);
   EXPECT_FALSE(slide.outside_is_large);
-}
-
-TEST(delineation, a_gap_longer_than_allowed_leaves_the_lobe_outside_and_says_how_much_it_is) {
-  MadeSlide made({}, {scar, near_lobe, far_lobe});
   made.options.deposit.longest_gap = 0.2;  // the gap is 24 cells, and the slide has come 34 by then
-  const SurveyedSlide slide = made.slide();
-  EXPECT_NEAR(deposit_of(slide) / made.volume(near_lobe), 1, 0.02);
-  EXPECT_NEAR(slide.outside.sure_rise / made.volume(far_lobe), 1, 0.02);
-  EXPECT_TRUE(slide.outside_is_large);
-  EXPECT_TRUE(test::holds(outside_words(slide), {"draw the deposit"}));
+  const SurveyedSlide near = made.slide();
+  EXPECT_NEAR(deposit_of(near) / made.volume(near_lobe), 1, 0.02);
+  EXPECT_NEAR(near.outside.sure_rise / made.volume(far_lobe), 1, 0.02);
+  EXPECT_TRUE(near.outside_is_large);
+  EXPECT_TRUE(test::holds(outside_words(near), {"draw the deposit"}));
 }
 
 /// Heaps of four cells each stand out, and are noise by the number of their cells; together they are much of the slide.
@@ -111,15 +157,12 @@ TEST(delineation, a_slide_beside_it_is_outside_and_explained) {
 }
 
 /// 40 m apart are four cells, well within the bridge; but a ridge of 40 m stands between them.
-TEST(delineation, a_bridge_does_not_cross_a_ridge) {
+/// Nothing rests on ground of 35 degrees: 700 m of it are no gap.
+TEST(delineation, a_bridge_does_not_cross_a_ridge_and_a_lobe_below_a_long_steep_face_belongs_to_the_slide) {
   const Cap small_scar{150, 1300, 30, -12}, lobe{150, 1050, 30, 6}, other{250, 1050, 30, 6};
   const Valleys narrow{.fall = 0.2, .flank = 0.8, .apart = 100};
   const MadeSlide made(narrow, {small_scar, lobe, other});
   EXPECT_NEAR(deposit_of(made.slide()) / made.volume(lobe), 1, 0.05);  // a lobe of 28 cells has more rim
-}
-
-/// Nothing rests on ground of 35 degrees: 700 m of it are no gap.
-TEST(delineation, a_lobe_below_a_long_steep_face_belongs_to_the_slide) {
   const Cap foot{150, 400, 45, 6};
   EXPECT_GT(deposit_of(MadeSlide({.fall = 0.7, .flank = 0.05}, {scar, foot}).slide()), 0);
   EXPECT_EQ(deposit_of(MadeSlide({.fall = 0.2, .flank = 0.05}, {scar, foot}).slide()), 0);
@@ -142,10 +185,7 @@ TEST(delineation, noise_neither_joins_nor_parts_what_belongs_together) {
 }
 
 Options pair_in(const std::filesystem::path& folder) {
-  Options options;
-  options.before_dem = folder / "before_dem.tif";
-  options.after_dem = folder / "after_dem.tif";
-  return options;
+  return test::two_models(folder / "before_dem.tif", folder / "after_dem.tif");
 }
 
 /// The surveyed change of SOURCE.md: 22,543 m3 of rise in 130 cells, all of it in one run-out of 800 m.

@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Difference of two surveys: its error, its volumes, what of it is the slide.
 #include "preprocess/survey/survey.hpp"
-#include "common/gis/polygons.hpp"
-#include "common/gis/read_raster.hpp"
+#include "common/gis/features.hpp"
+#include "common/gis/raster_file.hpp"
 
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "common/map/statistics.hpp"
 #include "data_samples/terrains.hpp"
 #include "preprocess/output/write_survey.hpp"
 #include "tests/preprocess/scene.hpp"
@@ -20,6 +18,7 @@ namespace talus::preprocess {
 namespace {
 
 using test::grid_of;
+using test::holds;
 using test::raster_of;
 using test::Scratch;
 
@@ -34,22 +33,23 @@ double clean_volume() {
 
 Options raw_options(const Scratch& scratch, unsigned seed) {
   const samples::Sample raw = samples::raw_valley(10, seed);
-  Options options;
-  options.before_dem = test::write(scratch, "before.tif", raw.rasters[0].second);
-  options.after_dem = test::write(scratch, "after.tif", raw.rasters[1].second);
+  Options options = test::two_models(test::write(scratch, "before.tif", raw.rasters[0].second),
+                                     test::write(scratch, "after.tif", raw.rasters[1].second));
   options.coregistration.mode = Alignment::apply;
   options.voids.fill = 1e5;
   return options;
 }
 
+using survey = test::WithScene;
+
 /// Eight surveys of the same slide. Their holes are the same, so that errors of filling do not average out: the errors
 /// are not expected to be centred, but to be as large as said.
-TEST(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors) {
+TEST_F(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors) {
   const double truth = clean_volume();
   double squares = 0, worst = 0, shift = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     Scratch scratch;
-    const Prepared prepared = prepare(raw_options(scratch, seed), Points::counted);
+    const Prepared prepared = preprocess::prepare(raw_options(scratch, seed), Points::counted);
     const Placement& p = prepared.survey->fit.placement;
     EXPECT_NEAR(p.x, -4, 0.1 * 10) << "seed " << seed;
     EXPECT_NEAR(p.y, 7, 0.1 * 10);
@@ -69,7 +69,7 @@ TEST(survey, recovers_shift_and_volumes_of_a_raw_pair_within_their_stated_errors
   EXPECT_LT(std::sqrt(squares), 1.5);  // nor far too small
 }
 
-TEST(survey, warns_and_leaves_the_later_model_where_it_is_unless_told) {
+TEST_F(survey, warns_and_leaves_the_later_model_where_it_is_unless_told) {
   Scratch scratch;
   Options options = raw_options(scratch, 1);
   options.coregistration.mode = Alignment::check;
@@ -83,16 +83,14 @@ TEST(survey, warns_and_leaves_the_later_model_where_it_is_unless_told) {
   EXPECT_DOUBLE_EQ(given.errors.sigma(0.7), 0.5);
 }
 
-TEST(survey, states_no_error_where_the_later_model_was_made_from_the_earlier_one) {
-  test::Scene scene;
-  const Prepared prepared = scene.prepare();
+TEST_F(survey, states_no_error_where_the_later_model_was_made_from_the_earlier_one) {
+  const Prepared prepared = prepare();
   EXPECT_FALSE(prepared.survey->errors.is_known());
   EXPECT_DOUBLE_EQ(prepared.survey->errors.same_share(), 1);
   EXPECT_TRUE(std::isnan(prepared.slide->volumes[0].volume.error));
-  EXPECT_NEAR(prepared.slide->volumes[0].volume.volume, test::volume_of(scene.bowl),
-              1e-6 * test::volume_of(scene.bowl));
+  EXPECT_NEAR(prepared.slide->volumes[0].volume.volume, test::volume_of(bowl), 1e-6 * test::volume_of(bowl));
   std::vector<std::string> lines;
-  const auto folder = scene.scratch / "survey";
+  const auto folder = scratch / "survey";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "difference_sigma.tif") << "of an earlier recipe";
   write_survey(folder, *prepared.survey, &prepared, {}, lines);
@@ -100,67 +98,53 @@ TEST(survey, states_no_error_where_the_later_model_was_made_from_the_earlier_one
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(folder / "survey.json"));
   EXPECT_EQ(json.at("error").at("known"), false);
   EXPECT_TRUE(json.at("source").at("error_m3").is_null());
-  scene.options.difference.sigma = 0.2;
-  EXPECT_GT(scene.prepare().slide->volumes[0].volume.error, 0) << "given, it is known";
+  options.difference.sigma = 0.2;
+  EXPECT_GT(prepare().slide->volumes[0].volume.error, 0) << "given, it is known";
 }
 
 /// A tenth of a millimetre is below what a survey tells, a centimetre is not.
-TEST(survey, knows_the_error_of_two_surveys_however_good_they_are) {
+TEST_F(survey, knows_the_error_of_two_surveys_however_good_they_are) {
   for (const double sigma : {1e-4, 0.01}) {
     const Scratch scratch;
     std::mt19937 random(5);
     std::normal_distribution<double> noise(0, sigma);
     samples::Sample valley = samples::valley(10);
     for (double& z : valley.rasters[1].second.values) z += noise(random);
-    Options options;
-    options.before_dem = test::write(scratch, "before.tif", valley.rasters[0].second);
-    options.after_dem = test::write(scratch, "after.tif", valley.rasters[1].second);
-    const Survey survey = survey_of(options);
+    const Survey survey = survey_of(test::two_models(test::write(scratch, "before.tif", valley.rasters[0].second),
+                                                     test::write(scratch, "after.tif", valley.rasters[1].second)));
     EXPECT_TRUE(survey.fit.known);
     EXPECT_EQ(survey.errors.is_known(), sigma > 1e-3) << sigma;
   }
 }
 
-TEST(survey, without_stable_ground_states_no_error) {
-  test::Scene scene;
+TEST_F(survey, without_stable_ground_states_no_error_and_refuses_to_align) {
   const MapGrid small = grid_of(9, 9, 10);
   const auto plane = [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000); };
-  scene.rewrite_before(raster_of(small, plane));
-  scene.rewrite_after(raster_of(small, [&](double x, double y) { return plane(x, y) - 5; }));
-  const Survey survey = survey_of(scene.options);
+  rewrite_before(raster_of(small, plane));
+  rewrite_after(raster_of(small, [&](double x, double y) { return plane(x, y) - 5; }));
+  const Survey survey = survey_of(options);
   EXPECT_FALSE(survey.fit.known);
   EXPECT_FALSE(survey.errors.is_known());
-}
-
-TEST(survey, refuses_to_align_without_stable_ground) {
-  test::Scene scene;
-  MapGrid small = grid_of(9, 9, 10);
-  scene.rewrite_before(raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000); }));
-  scene.rewrite_after(
-      raster_of(small, [](double x, double y) { return 0.3 * (x - 500000) + 0.1 * (y - 5100000) - 5; }));
-  scene.options.coregistration.mode = Alignment::apply;
-  EXPECT_TRUE(test::holds(scene.data_fault(), {"no stable ground"}));
+  options.coregistration.mode = Alignment::apply;
+  EXPECT_TRUE(holds(data_fault(), {"no stable ground"}));
 }
 
 /// They share a strip of eleven columns, but lie twelve apart.
-TEST(survey, refuses_to_align_models_that_do_not_overlap_once_moved) {
+TEST_F(survey, refuses_to_align_models_that_do_not_overlap_once_moved) {
   std::mt19937 random(4);
-  test::Scene scene;
   const MapGrid grid = grid_of(120, 90, 10), later = grid_of(120, 90, 10, grid.east() - 110);
   const test::Hills hills(grid_of(240, 90, 10), random);
-  scene.rewrite_before(raster_of(grid, hills));
-  scene.rewrite_after(raster_of(later, [&](double x, double y) { return hills(x + 120, y); }));
-  scene.options.coregistration.mode = Alignment::apply;
-  EXPECT_TRUE(test::holds(scene.data_fault(), {"no stable ground"}));
+  rewrite_before(raster_of(grid, hills));
+  rewrite_after(raster_of(later, [&](double x, double y) { return hills(x + 120, y); }));
+  options.coregistration.mode = Alignment::apply;
+  EXPECT_TRUE(holds(data_fault(), {"no stable ground"}));
 }
 
-TEST(survey, says_so_when_one_model_looks_like_feet) {
-  test::Scene scene;
-  Raster feet = scene.after;
+TEST_F(survey, says_so_when_one_model_looks_like_feet) {
+  Raster feet = after;
   for (double& z : feet.values) z /= 0.3048;
-  scene.rewrite_after(feet);
-  const std::string fault = scene.data_fault();
-  EXPECT_TRUE(test::holds(fault, {"look like feet", "Declare it in after_dem: gdal_edit.py -units foot"}));
+  rewrite_after(feet);
+  EXPECT_TRUE(holds(data_fault(), {"look like feet", "Declare it in after_dem: gdal_edit.py -units foot"}));
 }
 
 /// A unit of heights, and the name of it that a file declares.
@@ -179,7 +163,7 @@ void rewrite_in(test::Scene& scene, const Unit& before, const Unit& after) {
   }
 }
 
-TEST(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
+TEST_F(survey, one_model_in_feet_and_one_in_metres_are_compared_in_metres) {
   constexpr double ft = 0.3048, us_ft = 1200.0 / 3937.0;
   struct Case {
     double before, after;
@@ -271,17 +255,6 @@ TEST(variogram, finds_range_and_nugget_of_a_made_field) {
   EXPECT_NEAR(one.of_mean(area, 5) / v.of_mean(area, 5), 1, 0.01);
 }
 
-TEST(robust, statistics_ignore_a_few_wild_values) {
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal(3, 2);
-  std::vector<double> values;
-  for (int i = 0; i < 20001; ++i) values.push_back(i % 10 == 0 ? 1e6 : normal(random));
-  EXPECT_NEAR(median(values), 3, 0.4);  // a tenth on one side moves the middle by 0.14 standard deviations
-  EXPECT_NEAR(nmad(values), 2, 0.4);
-  EXPECT_EQ(median({1, 2, 4, 9}), 3);
-  EXPECT_TRUE(std::isnan(median({})));
-}
-
 const char* const eastern_half =
     "POLYGON((500300 5100000, 500400 5100000, 500400 5100300, 500300 5100300, 500300 5100000))";
 
@@ -297,7 +270,7 @@ TEST(delineation, deposit_is_what_rose_beside_the_source_or_inside_its_polygon) 
 }
 
 /// What tells the alignment and what is delineated is the same outline: the file may be gone by then.
-TEST(delineation, outlines_are_read_once) {
+TEST(delineation, outlines_are_read_once_and_one_that_crosses_itself_is_refused_before_anything_is_compared) {
   test::Scene scene;
   scene.options.deposit.polygon = test::write_polygon(scene.scratch, "heap.csv", eastern_half);
   const Prepared whole = scene.prepare();
@@ -307,30 +280,14 @@ TEST(delineation, outlines_are_read_once) {
   delineate(survey, {scene.before, scene.after, scene.bowl}, scene.options.deposit, slide);
   EXPECT_EQ(slide.volumes[1].volume.volume, whole.slide->volumes[1].volume.volume);
   EXPECT_GT(slide.volumes[1].volume.volume, 0);
-}
-
-TEST(delineation, an_outline_that_crosses_itself_is_refused_before_anything_is_compared) {
-  test::Scene scene;
   scene.options.deposit.polygon =
       test::write_polygon(scene.scratch, "heap.csv",
                           "POLYGON((500100 5100100, 500300 5100200, 500300 5100100, 500100 5100200, 500100 5100100))");
-  EXPECT_TRUE(test::holds(test::fault_of<DataError>([&] { survey_of(scene.options); }),
-                          {"heap.csv: polygon 1 is not valid (Self-intersection"}));
+  EXPECT_TRUE(holds(test::fault_of<DataError>([&] { survey_of(scene.options); }),
+                    {"heap.csv: polygon 1 is not valid (Self-intersection"}));
 }
 
-/// The polygon runs between cell centres, so that cells on it count in part.
-TEST(write_survey, outlines_given_back_give_the_same_slide) {
-  test::Scene scene;
-  const Prepared prepared = scene.prepare();
-  std::vector<std::string> lines;
-  write_survey(scene.scratch / "survey", *prepared.survey, &prepared, {}, lines);
-  scene.options.source.polygon = scene.options.deposit.polygon = scene.scratch / "survey" / "outlines.gpkg";
-  const Prepared again = scene.prepare();
-  EXPECT_NEAR(again.total.volume / prepared.total.volume, 1, 0.02);
-  EXPECT_NEAR(again.slide->volumes[1].volume.volume / prepared.slide->volumes[1].volume.volume, 1, 0.02);
-}
-
-TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
+TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis_and_outlines_of_the_same_slide) {
   test::Scene scene;
   const Prepared prepared = scene.prepare();
   std::vector<std::string> lines;
@@ -346,6 +303,10 @@ TEST(write_survey, leaves_rasters_outlines_and_styles_for_a_gis) {
   EXPECT_NEAR(test::volume_of(read_raster(scene.scratch / "survey" / "source_thickness.tif")), prepared.total.volume,
               1e-6 * prepared.total.volume);
   EXPECT_EQ(read_polygons(scene.scratch / "survey" / "outlines.gpkg", "").front().name, "source");
+  scene.options.source.polygon = scene.options.deposit.polygon = scene.scratch / "survey" / "outlines.gpkg";
+  const Prepared again = scene.prepare();
+  EXPECT_NEAR(again.total.volume / prepared.total.volume, 1, 0.02);
+  EXPECT_NEAR(again.slide->volumes[1].volume.volume / prepared.slide->volumes[1].volume.volume, 1, 0.02);
 }
 
 }  // namespace

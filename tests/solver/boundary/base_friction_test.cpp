@@ -1,15 +1,101 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bed at base nodes and columns: impulses, how far the ground turns, what is held and what landing takes.
+// The list of basal laws; the bed at base nodes and columns: impulses, how far the ground turns, what is held.
 #include "solver/boundary/base_friction.hpp"
-
-#include <gtest/gtest.h>
-
+#include "common/domain/bed_numbers.hpp"
 #include "solver/boundary/bed_hold.hpp"
 #include "solver/boundary/contact_impulses.hpp"
-#include "solver/boundary/ground_turn.hpp"
-#include "solver/boundary/separation.hpp"
+#include "solver/boundary/law.hpp"
+#include "solver/options/bed.hpp"
+#include "tests/solver/boundary/any_law.hpp"
 #include "tests/solver/small_grid.hpp"
+
+namespace talus::testing {
+namespace {
+
+using solver::BaseOptions;
+
+TEST(FrictionLaws, hold_what_every_law_must) { expect_laws_to_hold<FrictionLaws>(); }
+
+TEST(FrictionLaws, weaken_or_drag_as_their_numbers_say) {
+  OptionsOfLaws<FrictionLaws> o;
+  o.turbulence = 1000;
+  const auto voellmy = some_bed<Voellmy, FrictionLaws>(o);
+  EXPECT_DOUBLE_EQ(voellmy.coefficient(voellmy.uniform, {5, 0, 0.01}), std::tan(20 * std::numbers::pi / 180));
+  EXPECT_DOUBLE_EQ(voellmy.drag(voellmy.uniform, {5, 0, 0.01}), 2000 * 9.81 / 1000 * 25);
+  const auto weakening = some_bed<VelocityWeakening, FrictionLaws>(o);
+  EXPECT_DOUBLE_EQ(weakening.coefficient(weakening.uniform, {1, 0, 0.01}), (0.7 + 0.23) / 2);
+}
+
+TEST(Bed, is_no_larger_than_its_five_numbers_were) { EXPECT_LE(sizeof(Bed<double>), 5 * sizeof(double)); }
+
+TEST(BedNumbers, are_those_of_the_laws_and_have_a_member_each) {
+  BaseOptions options;
+  std::set<double*> members;
+  for (const std::string_view key : bed_numbers) {
+    double* const number = options.named(key);
+    ASSERT_NE(number, nullptr) << key;
+    EXPECT_TRUE(members.insert(number).second) << key;
+    bool used = false;
+    FrictionLaws::each([&](auto law) {
+      options.law = static_cast<FrictionLaw>(FrictionLaws::index_of<decltype(law)>());
+      used = used || options.uses(key);
+    });
+    EXPECT_TRUE(used) << key << " belongs to no law";
+  }
+  EXPECT_EQ(options.named("law"), nullptr);
+}
+
+/// The numbers of a law, those of a place and of the scene.
+template <class Law>
+struct Made {
+  std::vector<double> here = std::vector<double>(Law::count), everywhere = std::vector<double>(Law::constant_count);
+  explicit Made(const BaseOptions& o) {
+    const BedSetting setting{.borne = 1, .density = 2000, .gravity = 9.81};
+    Law::numbers(o, setting, here.data());
+    Law::constants(o, setting, everywhere.data());
+  }
+};
+
+TEST(BedNumbers, reach_the_numbers_of_a_place_and_no_others_do) {
+  // A number of the scene that a raster gives would be missed in silence, and so would one of a place that none gives.
+  FrictionLaws::each([&](auto law) {
+    using Law = decltype(law);
+    typename Law::Options own;
+    recipe::Defaults keys;
+    own.describe(*recipe::make_collector("law", keys), {});
+    for (const auto& [place, value] : keys) {
+      const std::string key = place.substr(place.rfind('.') + 1);
+      const bool from_raster = std::find(bed_numbers.begin(), bed_numbers.end(), key) != bed_numbers.end();
+      BaseOptions options;
+      const Made<Law> before(options);
+      if constexpr (std::is_same_v<Law, FrictionTable>) {
+        options.table.back()[0] *= 0.9;
+      } else {
+        double* const number = options.named(key);
+        ASSERT_NE(number, nullptr) << key;
+        *number = 0.9 * *number + 0.01;
+      }
+      const Made<Law> after(options);
+      EXPECT_EQ(before.here != after.here, from_raster) << key;
+      EXPECT_EQ(before.everywhere != after.everywhere, !from_raster) << key;
+    }
+  });
+}
+
+TEST(BaseOptions, say_the_bed_in_a_line) {
+  BaseOptions o;
+  o.cohesion = 50;
+  EXPECT_EQ(o.words(), "coulomb, 20 deg, cohesion 50 Pa");
+  o.law = FrictionLaw::voellmy;
+  o.pore_pressure_ratio = 0.5;
+  EXPECT_EQ(o.words(), "voellmy, 20 deg and xi = 500 m/s2, cohesion 50 Pa, water carries 0.5 of the normal stress");
+  o.law = FrictionLaw::stick;
+  EXPECT_EQ(o.words(), "held");
+}
+
+}  // namespace
+}  // namespace talus::testing
 
 namespace talus::solver::testing {
 namespace {
@@ -79,9 +165,8 @@ TEST(GroundTurn, is_the_climb_beyond_the_slopes_under_the_node) {
   const CurvedGrid ground;
   const Vec3<double> v{6, -4, 1};
   const double dt = 0.25, bend = ground.a * 36 - 2 * ground.c * 24 + ground.e * 16;
-  for (const int i : {0, 3, 7}) {
+  for (const int i : {0, 3, 7})
     for (const int j : {0, 4, 7}) EXPECT_NEAR(climb_ahead(ground.grid.view(), i, j, v, dt), dt / 2 * bend, 1e-14);
-  }
   const double sx = ground.a * 6 + ground.c * 8, sy = ground.c * 6 + ground.e * 8;
   EXPECT_NEAR(turn_of_ground(ground.grid.view(), 3, 4, v, dt), dt / 2 * bend / std::sqrt(1 + sx * sx + sy * sy), 1e-14);
   const SmallGrid plane(0.5, -0.25);
@@ -110,7 +195,6 @@ struct HeldColumn {
   std::vector<Vec4<double>> nodes = std::vector<Vec4<double>>(SmallGrid::nodes), changes = nodes;
   std::vector<double> lying = std::vector<double>(64), rise = std::vector<double>(64, 1), pressed = lying;
   Walls<double> walls;
-  static constexpr std::size_t column = 2 * SmallGrid::side + 5;
 
   /// Speeds along the slope and away from it of the three [m/s].
   explicit HeldColumn(double along, double base, double above) {
@@ -144,7 +228,7 @@ TEST(HoldColumns, takes_what_the_column_leaves_by_as_a_whole) {
     EXPECT_NEAR(c.along(k), 5, 1e-14) << "a pull gives no friction";
   }
   EXPECT_NEAR(c.away(4), 3, 1e-14) << "what flies above is left alone";
-  EXPECT_EQ(c.rise[HeldColumn::column], 0) << "it lies on the bed";
+  EXPECT_EQ(c.rise[SmallGrid::column], 0) << "it lies on the bed";
   EXPECT_NEAR(c.clock.budget.holding_loss, 0.5 * 200 * 2 * 2, 1e-10);
   EXPECT_NEAR(c.clock.budget.bed_loss + c.clock.budget.transfer_loss, 0, 1e-10);
   EXPECT_NEAR(c.clock.budget.reaction[0], 200 * 2 * 0.6, 1e-10);
@@ -185,7 +269,7 @@ TEST(HoldColumns, holds_up_to_the_depth_of_what_lies_on_the_bed) {
   for_each(CpuDevice::make(), 4 * block_columns,
            MeasureLying<double, PackedNodes<double>>{
                c.grid.view(), c.grid.active.data(), &c.clock, {c.nodes.data(), nullptr}, c.lying.data()});
-  EXPECT_EQ(c.lying[HeldColumn::column], 200) << "without what flies";
+  EXPECT_EQ(c.lying[SmallGrid::column], 200) << "without what flies";
   EXPECT_EQ(c.lying[0], 0);
   constexpr double depth = 200.0 / (2000 * 4 * 1.25);  // on a cell of 2 m by 2 m, along the normal of the slope
   c.hold({c.lying.data(), 2000 * 0.99 * depth});
@@ -197,9 +281,8 @@ TEST(HoldColumns, holds_up_to_the_depth_of_what_lies_on_the_bed) {
 TEST(HoldColumns, takes_the_rim_of_a_deep_mass_for_deep) {
   HeldColumn c(5, 2, 2);
   c.lying.assign(64, 0);
-  for (std::size_t j = 0; j < 8; ++j) {
+  for (std::size_t j = 0; j < 8; ++j)
     for (std::size_t i = 3; i < 8; ++i) c.lying[j * 8 + i] = i < 5 ? 50 : 800;
-  }
   const auto view = c.grid.view();
   EXPECT_EQ(mass_for_depth(view, c.lying.data(), 3, 3), 800) << "beside empty columns";
   EXPECT_EQ(mass_for_depth(view, c.lying.data(), 4, 3), 800);
@@ -212,7 +295,7 @@ TEST(HoldColumns, takes_the_rim_of_a_deep_mass_for_deep) {
 TEST(CountLanding, counts_what_bed_and_weight_took_of_the_motion_across_the_bed) {
   for (const double impulse : {0.0, 160.0, 400.0, 2000.0}) {
     HeldColumn c(5, -1, -1);
-    c.pressed[HeldColumn::column] = impulse;
+    c.pressed[SmallGrid::column] = impulse;
     for_each(CpuDevice::make(), 4 * block_columns,
              CountLanding<double, PackedNodes<double>>{.grid = c.grid.view(),
                                                        .active = c.grid.active.data(),

@@ -25,8 +25,7 @@ TEST(ShareLeftByTraction, stops_what_cohesion_can_hold_and_turns_nothing_back) {
   EXPECT_EQ(share_left_by_traction(0.0, 300.0, 300.0, 0.01), 1);
 }
 
-/// A sheet of two layers of nodes over the columns from 2 to 5 across and along, 100 kg a node at (3, 1) m/s along the
-/// ground.
+/// A sheet of two layers of nodes over the columns from 2 to 5 both ways, 100 kg a node at (3, 1) m/s along the ground.
 struct Sheet {
   SmallGrid grid{0.3, -0.2};
   Clock clock;
@@ -218,9 +217,8 @@ std::vector<double> masses_over_line(double first_node, double length, Depth dep
 double covered_length(const std::vector<double>& line, int nodes) {
   const SmallGrid grid;
   std::vector<double> mass(64);
-  for (std::size_t j = 0; j < 8; ++j) {
+  for (std::size_t j = 0; j < 8; ++j)
     for (std::size_t i = 0; i < 8; ++i) mass[j * 8 + i] = line[i];
-  }
   double sum = 0;
   for (int i = 0; i < nodes; ++i) sum += cover(grid.view(), mass.data(), i, 4);
   return sum;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kernels are run once for every contact point of the blocks in use and of those around them, and for no other.
-#include "solver/boundary/nearby_contacts.hpp"
+#include "solver/boundary/surface_contact.hpp"
 
-#include "tests/solver/on_each_device.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "solver/boundary/contact_impulses.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {
@@ -105,9 +106,7 @@ TEST(SolveColumns, gives_what_the_matrix_of_a_column_gives) {
   const Eigen::MatrixXd change = across.partialPivLu().solve(pressing) * normal.transpose() +
                                  along.partialPivLu().solve(impulses - pressing * normal.transpose());
   for (int k = 0; k < 6; ++k) {
-    EXPECT_NEAR(c.node(k).x, 3 + change(k, 0), 1e-12) << k;
-    EXPECT_NEAR(c.node(k).y, -1 + change(k, 1), 1e-12) << k;
-    EXPECT_NEAR(c.node(k).z, 5 + change(k, 2), 1e-12) << k;
+    expect_near(c.node(k), {3 + change(k, 0), -1 + change(k, 1), 5 + change(k, 2)}, 1e-12, k);
     EXPECT_NEAR(c.force(k).z, change(k, 2), 1e-12) << "the change is kept for the points";
   }
 }
@@ -117,9 +116,7 @@ TEST(SolveColumns, keep_momentum_and_leave_free_fall_as_it_is) {
   const Vec3<double> expected = c.momentum(false) + c.impulse();
   c.solve();
   const Vec3<double> after = c.momentum(true);
-  EXPECT_NEAR(after.x, expected.x, 1e-10);
-  EXPECT_NEAR(after.y, expected.y, 1e-10);
-  EXPECT_NEAR(after.z, expected.z, 1e-10);
+  expect_near(after, expected, 1e-10);
   for (int k = 0; k < 6; ++k) falls.force(k) = {falls.force(k).w, 0, 0, 0};
   falls.solve();
   for (int k = 0; k < 6; ++k) {
@@ -250,9 +247,7 @@ TEST(ColumnInertia, gives_what_the_matrix_of_a_column_gives) {
   c.take();
   for (int k = 0; k < KeptColumn::layers; ++k) {
     const Vec4<double> node = c.nodes[c.place(k)], kept = c.changes[c.place(k)];
-    EXPECT_NEAR(node.x, (k == KeptColumn::empty ? 0 : 3) + change(k, 0), 1e-14) << k;
-    EXPECT_NEAR(node.y, change(k, 1), 1e-14) << k;
-    EXPECT_NEAR(node.z, change(k, 2), 1e-14) << k;
+    expect_near(node, {(k == KeptColumn::empty ? 0 : 3) + change(k, 0), change(k, 1), change(k, 2)}, 1e-14, k);
     EXPECT_NEAR(kept.z, change(k, 2), 1e-14) << "the change is kept for the points";
     EXPECT_EQ(length(c.given[c.place(k)]), 0) << "an impulse is taken once";
   }

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Points and nodes of elements: displacement gradients, filler springs (T17a), diagonals (T19).
-#include "solver/elements/displacement_gradient.hpp"
+#include "solver/elements/forces.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
 #include "solver/elements/filler_springs.hpp"
-#include "solver/elements/held_nodes.hpp"
+#include "solver/elements/point_tangents.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {

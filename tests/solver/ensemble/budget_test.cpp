@@ -4,7 +4,7 @@
 // law says that the doubt of its friction moves it.
 #include <sstream>
 
-#include "solver/ensemble/member_run.hpp"
+#include "solver/ensemble/in_flight.hpp"
 #include "solver/ensemble/run_members.hpp"
 #include "solver/ensemble/variations.hpp"
 #include "solver/run/simulation.hpp"
@@ -64,9 +64,7 @@ struct BudgetScene {
 
   EnsembleCounts run(On on, int at_a_time = 2) const {
     EnsembleCounts counts = noted();
-    std::vector<AnyDevice> devices;
-    for (int k = 0; k < at_a_time; ++k) devices.push_back(make_device(on));
-    EXPECT_TRUE(run_members(members, counts, {.devices = devices}));
+    EXPECT_TRUE(run_members(members, counts, {.devices = devices_for(at_a_time, on)}));
     return counts;
   }
 
@@ -100,14 +98,6 @@ struct BudgetScene {
   }
 };
 
-/// The number of values that differ.
-std::size_t differing(const std::vector<double>& a, const std::vector<double>& b) {
-  std::size_t count = a.size() == b.size() ? 0 : 1;
-  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n)
-    if (!(a[n] == b[n] || (std::isnan(a[n]) && std::isnan(b[n])))) ++count;
-  return count;
-}
-
 /// Every member beside the run of the recipe with its values, on all threads: the same bits.
 void expect_runs_by_hand(const BudgetScene& scene, On on) {
   const EnsembleCounts noted = scene.noted();
@@ -130,6 +120,7 @@ void expect_runs_by_hand(const BudgetScene& scene, On on) {
 }
 
 class BudgetRuns : public InEachPlace {};
+TALUS_IN_EACH_PLACE(BudgetRuns);
 
 TEST_P(BudgetRuns, are_the_runs_that_the_recipe_makes_with_their_values) {
   const BudgetScene scene(heap_recipe() + budget_table, small_heap());
@@ -154,29 +145,13 @@ double block_way(double mu) {
   return start_speed * start_speed * std::cos(slope) / (2 * gravity * (mu * std::cos(slope) - std::sin(slope)));
 }
 
-std::string block_recipe() {
-  const double across = start_speed * std::cos(slope), down = -start_speed * std::sin(slope);
-  return "[solve]\nend_time_s = 3.0\nintegrator = \"column-implicit\"\ninitial_velocity_m_s = [" +
-         std::to_string(across) + ", 0.0, " + std::to_string(down) +
-         "]\n[solve.material]\nfriction_angle_deg = 40.0\ncohesion_Pa = 1e6\nyoungs_modulus_Pa = 1e8\n"
-         "[solve.base]\nlaw = \"coulomb\"\nfriction_angle_deg = 25.0\n" +
-         budget_table + "friction_doubt = 0.1\n";
-}
-
-Domain block() {
-  Domain d = ground(28, 8, 1.0, 1.0, [](double x, double) { return 100 - std::tan(slope) * x; });
-  fill(d, {6, 10, 2, 6, 0, 1});
-  return d;
-}
-
 TEST_P(BudgetRuns, move_a_block_as_far_as_the_doubt_of_its_friction_does) {
-  const BudgetScene scene(block_recipe(), block());
+  const BudgetScene scene(
+      block_recipe("friction_angle_deg = 40.0\ncohesion_Pa = 1e6\n") + budget_table + "friction_doubt = 0.1\n",
+      block_on_the_incline());
   const EnsembleCounts counts = scene.run(GetParam());
   const double way = counts.results.front().centre_travel, mu = std::tan(friction_deg * degree);
   const auto change = [&](const char* name) { return counts.results[scene.place(name)].centre_travel - way; };
-  std::printf("  way %.4f m (%.4f), less %.4f (%.4f), more %.4f (%.4f), step %.5f, modulus %.5f\n", way, block_way(mu),
-              change("friction-less"), block_way(0.9 * mu) - block_way(mu), change("friction-more"),
-              block_way(1.1 * mu) - block_way(mu), change("step"), change("modulus"));
   // The block's way is within 0.08 % of the rigid one's; a change is a difference of two such ways.
   EXPECT_NEAR(way, block_way(mu), 1e-3 * way);
   EXPECT_NEAR(change("friction-less"), block_way(0.9 * mu) - block_way(mu), 1e-3 * way);
@@ -185,8 +160,6 @@ TEST_P(BudgetRuns, move_a_block_as_far_as_the_doubt_of_its_friction_does) {
   for (const char* name : {"step", "modulus", "strength-less", "strength-more"})
     EXPECT_NEAR(change(name), 0, 1e-3 * way) << name;
 }
-
-TALUS_IN_EACH_PLACE(BudgetRuns);
 
 /// A recipe of the heap with a change of its own; `more` are lines of [solve].
 std::string with_own_run(const std::string& set, const std::string& more = "") {

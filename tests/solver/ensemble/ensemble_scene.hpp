@@ -4,14 +4,14 @@
 #pragma once
 
 #include "solver/ensemble/members.hpp"
-#include "solver/run/run_inputs.hpp"
+#include "solver/run/simulation.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 
 /// Of blocks on an incline: the incline, and the speed down it at the start [m/s].
-inline constexpr double degree = std::numbers::pi / 180, gravity = 9.81, slope = 10 * degree, start_speed = 5;
+inline constexpr double gravity = 9.81, slope = 10 * degree, start_speed = 5;
 
 /// The heap: 512 points on a slope of 17 degrees.
 inline Domain small_heap() {
@@ -32,6 +32,19 @@ inline std::string heap_recipe(const std::string& more = "", bool deterministic 
          "[solve.material]\nyoungs_modulus_Pa = 1e6\n[solve.base]\nlaw = \"coulomb\"\nfriction_angle_deg = 12.0\n";
 }
 
+/// The recipe of a block that slides to rest on the incline, with lines of its material.
+inline std::string block_recipe(const std::string& material) {
+  const double across = start_speed * std::cos(slope), down = -start_speed * std::sin(slope);
+  return "[solve]\nend_time_s = 3.0\nintegrator = \"column-implicit\"\ninitial_velocity_m_s = [" +
+         std::to_string(across) + ", 0.0, " + std::to_string(down) + "]\n[solve.material]\n" + material +
+         "youngs_modulus_Pa = 1e8\n[solve.base]\nlaw = \"coulomb\"\nfriction_angle_deg = 25.0\n";
+}
+/// The block, its lower edge at column 10.
+inline Domain block_on_the_incline() {
+  return filled(ground(28, 8, 1.0, 1.0, [](double x, double) { return 100 - std::tan(slope) * x; }),
+                {6, 10, 2, 6, 0, 1});
+}
+
 /// Members that differ in numbers, in a law by its name, in the time of records and in the thickness of the release.
 inline MemberTable small_table() {
   MemberTable table;
@@ -45,6 +58,14 @@ inline MemberTable small_table() {
                    {thickness_factor_key, {1, 0.8, 1.25, 1, 1, 1.5}, {}}};
   table.own_domain.assign(6, 0);
   return table;
+}
+
+/// The number of values that differ.
+inline std::size_t differing(const std::vector<double>& a, const std::vector<double>& b) {
+  std::size_t count = a.size() == b.size() ? 0 : 1;
+  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n)
+    if (!(a[n] == b[n] || (std::isnan(a[n]) && std::isnan(b[n])))) ++count;
+  return count;
 }
 
 /// An ensemble of the heap, whose recipe lies in a scratch folder.

@@ -1,17 +1,124 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From members.h5 to counts.h5: parts, what is taken up again, what is refused.
+// From members.h5 to counts.h5, and ensembles of blocks on an incline against closed forms of their distributions.
 #include "solver/ensemble/ensemble_stage.hpp"
-
-#include "common/stage/console.hpp"
-#include "solver/ensemble/keep_runs.hpp"
+#include "common/stage/context.hpp"
+#include "solver/ensemble/in_flight.hpp"
+#include "solver/ensemble/run_members.hpp"
 #include "solver/run/run_loop.hpp"
-#include "tests/common/ensemble/same_maps.hpp"
+#include "tests/common/ensemble/ensemble_scene.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 
 namespace talus::solver::testing {
 namespace {
+
+constexpr double least = 20, most = 30;  ///< friction angle of the bed, uniform between them [deg]
+
+/// The deceleration of a rigid block along the incline [m/s2].
+double deceleration(double friction_deg) {
+  return gravity * (std::tan(friction_deg * degree) * std::cos(slope) - std::sin(slope));
+}
+
+/// The plan distance in which it comes to rest [m].
+double distance(double friction_deg) {
+  return start_speed * start_speed / (2 * deceleration(friction_deg)) * std::cos(slope);
+}
+
+/// The share of the members whose deceleration is below `a`.
+double share_below(double a) {
+  const double friction = std::atan((a / gravity + std::sin(slope)) / std::cos(slope)) / degree;
+  return std::clamp((friction - least) / (most - least), 0.0, 1.0);
+}
+
+/// The share whose block goes no farther than `s` in plan.
+double share_within(double s) { return 1 - share_below(start_speed * start_speed * std::cos(slope) / (2 * s)); }
+
+class BlocksOnInclines : public InEachPlace {
+ protected:
+  static constexpr int count = 32, front = 10;  ///< members; the column of the block's lower edge
+
+  BlocksOnInclines() : recipe_(scratch_.write("recipe.toml", block_recipe("model = \"hencky\"\n"))) {
+    table_.design = "table";
+    table_.count = count;
+    table_.columns = {{"solve.base.friction_angle_deg", {}, {}}};
+    for (int k = 0; k < count; ++k)  // the middle of every stratum
+      table_.columns[0].values.push_back(least + (most - least) * (k + 0.5) / count);
+    table_.own_domain.assign(count, 0);
+  }
+
+  EnsembleCounts counted(const ThresholdOptions& thresholds) const {
+    const SolveOptions base = options_of(recipe_, scratch_.folder());
+    const Members members(recipe_, table_, {scratch_.folder()}, std::make_shared<const Domain>(domain_), base);
+    EnsembleScene scene;
+    scene.grid = domain_.grid;
+    scene.terrain = scene.before = scene.release_thickness = domain_.terrain.values;
+    scene.threshold = base.map_threshold;
+    EnsembleCounts counts = empty_counts(scene, count, {0, count}, thresholds);
+    run_members(members, counts, {.devices = devices_for(2, GetParam())});
+    EXPECT_EQ(counts.count(MemberState::counted), count);
+    return counts;
+  }
+
+  test::Scratch scratch_;
+  recipe::Recipe recipe_;
+  Domain domain_ = block_on_the_incline();
+  MemberTable table_;
+};
+TALUS_IN_EACH_PLACE(BlocksOnInclines);
+
+/// A block on points in cells of a metre follows Coulomb's law to 0.5 %: at 1e8 Pa it is 0.1 % from rigid. The members
+/// are the middles of strata, so the distribution of distances may differ from the closed form by half a member and by
+/// what 0.5 % of a distance is in probability: at most 0.5 % of d(share)/d(ln s) = 2.
+void expect_distances(const EnsembleCounts& counts, const std::vector<double>& friction) {
+  double largest = 0, apart = 0;
+  std::vector<double> ways;
+  for (std::size_t k = 0; k < friction.size(); ++k) {
+    ways.push_back(counts.results[k].centre_travel);
+    largest = std::max(largest, std::abs(ways.back() / distance(friction[k]) - 1));
+  }
+  std::sort(ways.begin(), ways.end());
+  const auto count = static_cast<double>(ways.size());
+  for (std::size_t k = 0; k < ways.size(); ++k) {  // Kolmogorov and Smirnov's distance
+    const double share = share_within(ways[k]), below = static_cast<double>(k) / count;
+    apart = std::max({apart, std::abs(share - below), std::abs(share - below - 1 / count)});
+  }
+  EXPECT_LT(largest, 5e-3);
+  EXPECT_LT(apart, 1 / count + 0.01);
+}
+
+/// The block's front passes the middle of a cell, s from where it began, at v^2 = v0^2 - 2 a s: the probability that
+/// the largest speed there is above v is that of a < (v0^2 - v^2) / 2 s. A cell's speed is the mean of its points,
+/// which come by within a cell of that place.
+void expect_exceedance(const EnsembleCounts& counts, int front) {
+  const MapTally& speed = counts.maps[2];
+  ASSERT_STREQ(counted_maps[2].name, "peak_speed");
+  const auto members = static_cast<double>(counts.members);
+  int between = 0;
+  for (std::size_t n = 0; n < speed.thresholds.size(); ++n) {
+    const double v = speed.thresholds[n];
+    const auto exceeded = counts.cells.spread(speed.exceeded[n], 0u);
+    const auto probability = [&](double s) {
+      return s <= 0 ? 1.0 : share_below((start_speed * start_speed - v * v) / (2 * s));
+    };
+    for (int column = front + 1; column < counts.scene.grid.columns - 2; ++column) {
+      const double s = (column + 0.5 - front) / std::cos(slope);
+      const double counted = exceeded[counts.scene.grid.index(column, 4)] / members;
+      EXPECT_LE(counted, probability(s - 1) + 1 / members) << v << " m/s at column " << column;
+      EXPECT_GE(counted, probability(s + 1) - 1 / members) << v << " m/s at column " << column;
+      between += counted > 0.1 && counted < 0.9 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(between, 4) << "probabilities are neither 0 nor 1 somewhere";
+}
+
+TEST_P(BlocksOnInclines, go_as_far_and_as_fast_as_the_distribution_of_friction_says) {
+  ThresholdOptions thresholds;
+  thresholds.speed = {1, 2, 3, 4};
+  const EnsembleCounts counts = counted(thresholds);
+  expect_distances(counts, table_.columns[0].values);
+  expect_exceedance(counts, front);
+}
 
 namespace fs = std::filesystem;
 
@@ -23,7 +130,10 @@ class EnsembleStage : public ::testing::Test {
     domain_ = small_heap();
     domain_.provenance = {{domain_id, "0123"}};
     write_domain(out() / "domain.vdb", domain_);
-    MemberTable table = small_table();
+    write_table(small_table());
+  }
+  /// As made by the recipe and domain as they are.
+  void write_table(MemberTable table) const {
     table.provenance = {{recipe_of_members, recipe_mark(recipe::Recipe(recipe_file_), "ensemble")},
                         {base_domain_id, "0123"}};
     write_member_table(EnsemblePaths{out()}.members(), table);
@@ -102,10 +212,7 @@ TEST_F(EnsembleStage, goes_on_from_what_is_finished) {
 
 TEST_F(EnsembleStage, keeps_whole_runs_of_the_members_asked_for) {
   scratch_.write("recipe.toml", recipe_text("keep = [\"1\"]\n"));
-  MemberTable table = small_table();
-  table.provenance = {{recipe_of_members, recipe_mark(recipe::Recipe(recipe_file_), "ensemble")},
-                      {base_domain_id, "0123"}};
-  write_member_table(EnsemblePaths{out()}.members(), table);
+  write_table(small_table());
   run({.members = MemberRange{0, 2}});
   const talus::Run kept = read_run(EnsemblePaths{out()}.run_folder(1) / "run.h5");
   const EnsembleCounts counts = read_counts(out() / "counts.0-2.h5");
@@ -119,9 +226,7 @@ TEST_F(EnsembleStage, keeps_no_run_of_a_member_that_is_refused) {
   table.columns.push_back(
       {"solve.material.youngs_modulus_Pa", {1e6, 10, 1e6, 1e6, 1e6, 1e6}, {}});  // its weight squashes it
   table.own_domain[2] = 1;                                                       // which is missing
-  table.provenance = {{recipe_of_members, recipe_mark(recipe::Recipe(recipe_file_), "ensemble")},
-                      {base_domain_id, "0123"}};
-  write_member_table(EnsemblePaths{out()}.members(), table);
+  write_table(table);
   run({});
   for (const int refused : {1, 2}) EXPECT_FALSE(fs::exists(EnsemblePaths{out()}.run_folder(refused) / "run.h5"));
   EXPECT_TRUE(fs::exists(EnsemblePaths{out()}.run_folder(3) / "run.h5"));

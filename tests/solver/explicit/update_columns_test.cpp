@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The update of the nodes of one column in an explicit step: gravity, forces, bed, walls, budget and maps.
-#include "solver/explicit/update_columns.hpp"
+#include "solver/explicit/explicit_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -97,7 +97,7 @@ TEST(UpdateColumns, counts_what_the_bed_takes_where_a_budget_is_kept) {
   const double mean = 0.5 * (3 + 2.5);  // velocity along x during the step; that of z stays zero
   EXPECT_NEAR(u.clock.budget.bed_loss, 100 * 0.5 * mean, 1e-10);
   EXPECT_NEAR(u.clock.budget.friction_loss, 100 * 0.5 * mean, 1e-10) << "all of it";
-  EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * 1, 1e-12) << "the weight of the base node";
+  EXPECT_NEAR(u.pressed[SmallGrid::column], 100 * 1, 1e-12) << "the weight of the base node";
   EXPECT_EQ(u.pressed[0], 0) << "nothing there";
 }
 
@@ -107,7 +107,7 @@ TEST(UpdateColumns, tells_friction_from_what_presses_on_a_slope) {
   u.at(u.nodes, 0) = {100, 100 * 7, 0, 100 * -1};  // 5 m/s along the slope, 5 into it
   u.update<NodeContent::force, true>();
   const double into = 5 + 0.8, along = 5 - 0.6, left = along - 0.5 * into;  // with the step's gravity, 1 m/s
-  EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * into, 1e-9);
+  EXPECT_NEAR(u.pressed[SmallGrid::column], 100 * into, 1e-9);
   EXPECT_NEAR(u.clock.budget.friction_loss, 100 * 0.5 * into * 0.5 * (5 + left), 1e-9);
   EXPECT_NEAR(u.clock.budget.bed_loss, u.clock.budget.friction_loss + 100 * into * 0.5 * 5, 1e-9);
 }
@@ -143,16 +143,15 @@ TEST(UpdateColumns, holds_what_falls_into_the_corner_between_a_slope_and_a_wall)
   EXPECT_DOUBLE_EQ(u.at(u.nodes, 0).x, 0);
   EXPECT_NEAR(u.at(u.nodes, 0).z, 0, 1e-15);
   EXPECT_NEAR(u.at(u.nodes, 0).y, 3 - 0.5 * 1.25, 1e-15) << "the bed bears 1 / cos of the fall of 1 m/s";
-  EXPECT_NEAR(u.pressed[2 * SmallGrid::side + 5], 100 * 1.25, 1e-12);
+  EXPECT_NEAR(u.pressed[SmallGrid::column], 100 * 1.25, 1e-12);
 }
 
 TEST(UpdateColumns, records_thickness_and_arrival_of_the_column) {
   Updated u;
   u.update<NodeContent::impulse>();
-  constexpr std::size_t column = 2 * SmallGrid::side + 5;
-  EXPECT_DOUBLE_EQ(u.thickness[column], 200.0 / (2000 * 4));
-  EXPECT_EQ(u.arrival[column], 2);
-  EXPECT_EQ(u.thickness[column + 1], 0);
+  EXPECT_DOUBLE_EQ(u.thickness[SmallGrid::column], 200.0 / (2000 * 4));
+  EXPECT_EQ(u.arrival[SmallGrid::column], 2);
+  EXPECT_EQ(u.thickness[SmallGrid::column + 1], 0);
 }
 
 TEST(UpdateColumns, tells_the_tractions_how_fast_columns_rise) {
@@ -161,14 +160,13 @@ TEST(UpdateColumns, tells_the_tractions_how_fast_columns_rise) {
   std::vector<double> rise(64, off_bed);
   u.columns = {mass.data(), rise.data()};
   u.update<NodeContent::impulse>();
-  constexpr std::size_t column = 2 * SmallGrid::side + 5;
-  EXPECT_EQ(mass[column], 200);
-  EXPECT_DOUBLE_EQ(rise[column], -1) << "what gravity makes of it in the step, before the bed";
-  EXPECT_EQ(rise[column + 1], off_bed) << "nothing there";
-  EXPECT_EQ(mass[column + 1], 0);
+  EXPECT_EQ(mass[SmallGrid::column], 200);
+  EXPECT_DOUBLE_EQ(rise[SmallGrid::column], -1) << "what gravity makes of it in the step, before the bed";
+  EXPECT_EQ(rise[SmallGrid::column + 1], off_bed) << "nothing there";
+  EXPECT_EQ(mass[SmallGrid::column + 1], 0);
   u.at(u.nodes, 0) = {100, 0, 0, 200};  // leaves faster than it falls
   u.update<NodeContent::impulse>();
-  EXPECT_DOUBLE_EQ(rise[column], 1);
+  EXPECT_DOUBLE_EQ(rise[SmallGrid::column], 1);
 }
 
 TEST(UpdateColumns, does_nothing_once_the_clock_has_halted) {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Points sorted by home cell, and which blocks have storage over which layers.
-#include "solver/grid/particle_order.hpp"
+#include "solver/grid/sparse_grid.hpp"
 
 #include <random>
 
-#include "solver/grid/block_storage.hpp"
-#include "tests/solver/on_each_device.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {

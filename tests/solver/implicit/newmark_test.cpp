@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kernels of an implicit step: Newmark's scheme, the unbalanced force of a node, and where a point goes at the end.
-#include "solver/implicit/newmark.hpp"
+#include "solver/implicit/node_fields.hpp"
 
 #include <gtest/gtest.h>
 
-#include "solver/implicit/accept_step.hpp"
 #include "solver/implicit/residual.hpp"
+#include "solver/implicit/transfer.hpp"
 #include "solver/options/material.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/implicit/one_node.hpp"
 #include "tests/solver/small_grid.hpp"
 
@@ -30,12 +31,6 @@ struct MovingNode {
             .freed = &freed};
   }
 };
-
-void expect_near(const Vec3<double>& a, const Vec3<double>& b, double tolerance = 1e-12) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
 
 TEST(Newmark, is_exact_for_a_constant_acceleration) {
   for (const double alpha : {0.25, 0.3}) {

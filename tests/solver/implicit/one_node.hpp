@@ -3,7 +3,7 @@
 // One node on level ground, for tests of what kernels do with it.
 #pragma once
 
-#include "solver/implicit/decide_contact.hpp"
+#include "solver/implicit/residual.hpp"
 
 namespace talus::solver::testing {
 

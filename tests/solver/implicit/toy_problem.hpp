@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A problem of a few unknowns for Newton's method: dense, solved by factorisation, with a contact per unknown where a
-// test wants that.
+// A problem of a few unknowns for Newton's method: dense, solved by factorisation, with contacts where wanted.
 #pragma once
 
 #include <Eigen/Dense>

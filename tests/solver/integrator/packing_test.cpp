@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sums and maps of the points: energies, thickness, packing; speed and pressure that no column exceeds.
-#include "solver/integrator/packing.hpp"
+#include "solver/integrator/particle_measures.hpp"
 
 #include <numeric>
 
-#include "solver/integrator/motion_maps.hpp"
 #include "solver/integrator/point_sums.hpp"
 #include "tests/solver/scenes.hpp"
 #include "tests/solver/small_grid.hpp"
@@ -41,8 +40,7 @@ TEST_P(PackedPoints, on_a_lattice_fill_their_room) {
 }
 
 TEST_P(PackedPoints, twice_in_the_room_of_one_are_packed_twice) {
-  Domain d = ground(24, 24, 1.0, 0.5, [](double, double) { return 0.0; });
-  fill(d, {6, 18, 6, 18, 0, 3}, 2, 2);
+  Domain d = filled(ground(24, 24, 1.0, 0.5, flat), {6, 18, 6, 18, 0, 3}, 2, 2);
   const Packing once = packing(d, ShapeKind::quadratic);
   fill(d, {6, 18, 6, 18, 0, 3}, 2, 2);
   const Packing twice = packing(d, ShapeKind::quadratic);
@@ -51,8 +49,7 @@ TEST_P(PackedPoints, twice_in_the_room_of_one_are_packed_twice) {
 }
 
 TEST_P(PackedPoints, far_denser_in_a_few_nodes_do_not_show_in_the_percentile) {
-  Domain d = ground(64, 24, 1.0, 0.5, [](double, double) { return 0.0; });
-  fill(d, {6, 56, 6, 18, 0, 3}, 2, 2);
+  Domain d = filled(ground(64, 24, 1.0, 0.5, flat), {6, 56, 6, 18, 0, 3}, 2, 2);
   fill(d, {30, 31, 11, 12, 1, 1.5}, 2, 2);  // a cell of 3600, about cells that hold no hundredth
   const Packing found = packing(d, ShapeKind::quadratic);
   EXPECT_GT(found.largest, 1.2);
@@ -60,8 +57,7 @@ TEST_P(PackedPoints, far_denser_in_a_few_nodes_do_not_show_in_the_percentile) {
 }
 
 TEST_P(PackedPoints, are_measured_alike_on_a_cartesian_grid) {
-  Domain d = ground(24, 24, 1.0, 0.5, [](double, double) { return 0.0; });
-  fill(d, {6, 18, 6, 18, 0, 3}, 2, 2);
+  Domain d = filled(ground(24, 24, 1.0, 0.5, flat), {6, 18, 6, 18, 0, 3}, 2, 2);
   const Packing follows = packing(d, ShapeKind::quadratic),
                 level = packing(d, ShapeKind::quadratic, Mapping::cartesian);
   EXPECT_NEAR(level.largest, follows.largest, 1e-6);

@@ -5,8 +5,8 @@
 
 #include <numeric>
 
-#include "solver/integrator/device_clock.hpp"
-#include "tests/solver/on_each_device.hpp"
+#include "solver/integrator/device_state.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {

@@ -1,19 +1,131 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bed, walls and contact points of a scene, of one column, and as a device holds them with maps and loads.
-#include "solver/integrator/surroundings.hpp"
+// Bed, walls and contact points of a scene, of one column and on a device; loads; accelerograms.
+#include <utility>
 
-#include "solver/column_implicit/column_inertia.hpp"
+#include "solver/column_implicit/solve_columns.hpp"
 #include "solver/integrator/column_boundary.hpp"
-#include "solver/integrator/device_bed.hpp"
-#include "solver/integrator/device_loads.hpp"
-#include "solver/integrator/device_maps.hpp"
-#include "solver/integrator/remap_columns.hpp"
+#include "solver/integrator/device_state.hpp"
+#include "solver/integrator/scene.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/scenes.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {
 namespace {
+
+TEST(Loads, grow_over_their_ramp_and_end) {
+  const std::vector<LoadOptions> loads{{.force = {8, -4, 2}, .ramp = 4, .from = 1, .to = 10},
+                                       {.force = {0, 0, 6}, .ramp = 0, .from = 0, .to = 2}};
+  const std::vector<double> volumes{2, 3};
+  const auto at = [&](double time) { return load_densities(loads, volumes, time, time); };
+  EXPECT_EQ(at(0)[0].x, 0);
+  EXPECT_EQ(at(0)[1].z, 2);
+  EXPECT_EQ(at(3)[0].x, 2);  // half of 8 N over 2 m3
+  EXPECT_EQ(at(3)[0].y, -1);
+  EXPECT_EQ(at(3)[1].z, 0);
+  EXPECT_EQ(at(7)[0].z, 1);
+  EXPECT_EQ(at(10)[0].x, 0);
+  EXPECT_TRUE(load_densities(loads, {}, 3, 3).empty());
+}
+
+TEST(Loads, that_begin_or_end_with_a_step_are_none_of_that_step_and_jump) {
+  const std::vector<LoadOptions> loads{{.force = {6, 0, 0}, .ramp = 0, .from = 1, .to = 2},
+                                       {.force = {6, 0, 0}, .ramp = 4, .from = 3, .to = 9}};
+  const std::vector<double> volumes{3, 2};
+  EXPECT_EQ(load_densities(loads, volumes, 0.5, 1)[0].x, 0);
+  EXPECT_EQ(load_densities(loads, volumes, 1, 1.5)[0].x, 2);
+  EXPECT_EQ(load_densities(loads, volumes, 1.5, 2)[0].x, 2);
+  EXPECT_EQ(load_densities(loads, volumes, 2, 2.5)[0].x, 0);
+  EXPECT_EQ(load_densities(loads, volumes, 3, 5)[1].x, 1.5);  // half of its ramp at the end of the step
+  for (const auto& [time, jumps] : {std::pair{0.5, false}, {1.0, true}, {2.0, true}, {3.0, false}, {9.0, true}})
+    EXPECT_EQ(loads_jump(loads, volumes, time), jumps) << time;
+  EXPECT_FALSE(loads_jump(loads, {}, 1)) << "they pull at nothing";
+}
+
+/// Samples unevenly apart, of two components.
+Shaking sample_shaking() {
+  return make_shaking({1, 1.5, 1.75, 4, 4.001}, {{2, 0, 0}, {-1, 1, 0}, {3, -4, 0}, {0, 0, 1}, {0, 0, 0}});
+}
+
+/// The acceleration at a time: linear between samples, none before and after.
+Vec3<double> acceleration_at(const Shaking& shaking, double time) {
+  for (std::size_t n = 1; n < shaking.samples.size(); ++n) {
+    const ShakingSample &a = shaking.samples[n - 1], &b = shaking.samples[n];
+    if (time < a.time || time > b.time) continue;
+    return a.acceleration + (b.acceleration - a.acceleration) * ((time - a.time) / (b.time - a.time));
+  }
+  return {};
+}
+
+TEST(ShakingRecord, has_the_integral_of_its_acceleration_as_velocity) {
+  const Shaking shaking = sample_shaking();
+  constexpr int steps = 500000;
+  Vec3<double> velocity{};
+  for (int n = 0; n < steps; ++n) {  // midpoints
+    const double step = 5.0 / steps, time = (n + 0.5) * step;
+    velocity += acceleration_at(shaking, time) * step;
+    if (n % 50 != 0) continue;
+    const Vec3<double> found = shaking.view().velocity_at(time + 0.5 * step);
+    ASSERT_NEAR(found.x, velocity.x, 2e-5) << "at " << time;  // a step across a jump is half right
+    ASSERT_NEAR(found.y, velocity.y, 2e-5) << "at " << time;
+    ASSERT_NEAR(found.z, velocity.z, 2e-5) << "at " << time;
+  }
+}
+
+TEST(ShakingRecord, rests_before_its_first_sample_and_keeps_its_velocity_after_the_last_one) {
+  const ShakingView view = sample_shaking().view();
+  const Shaking shaking = sample_shaking();
+  EXPECT_EQ(length(shaking.view().velocity_at(0)), 0);
+  EXPECT_EQ(length(shaking.view().velocity_at(1)), 0);
+  EXPECT_EQ(shaking.view().velocity_at(100).x, shaking.samples.back().velocity.x);
+  EXPECT_EQ(length(ShakingView{}.velocity_at(3)), 0);
+  EXPECT_EQ(view.count, 5);
+}
+
+TEST(ShakingRecord, names_the_next_sample_that_is_not_too_near) {
+  const Shaking shaking = sample_shaking();
+  EXPECT_EQ(shaking.next_sample(0, 0.01), 1);
+  EXPECT_EQ(shaking.next_sample(1, 0.01), 1.5) << "not the one at hand";
+  EXPECT_EQ(shaking.next_sample(1.499, 0.01), 1.75) << "nor one that is too near";
+  EXPECT_EQ(shaking.next_sample(3.9, 0.2), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(Shaking{}.next_sample(0, 0.01), std::numeric_limits<double>::infinity());
+}
+
+TEST(ShakingRecord, knows_its_largest_numbers) {
+  const Shaking shaking = make_shaking({0, 1, 2, 3}, {{0, 3, 4}, {0, 3, 4}, {0, -3, -4}, {0, -3, -4}});
+  EXPECT_DOUBLE_EQ(shaking.peak_acceleration(), 5);
+  EXPECT_DOUBLE_EQ(shaking.peak_velocity(), 5);
+  EXPECT_DOUBLE_EQ(shaking.velocity_range(), 5);
+  EXPECT_EQ(shaking.end(), 3);
+  EXPECT_FALSE(Shaking{}.acts());
+  EXPECT_EQ(Shaking{}.velocity_range(), 0);
+}
+
+TEST(ShakingWork, is_that_of_the_inertia_on_the_mean_velocity) {
+  Clock clock;
+  clock.step_size = 0.5;
+  clock.shake({1, -2, 0});  // 2 and -4 m/s2
+  ColumnLosses node, column;
+  node.add_shaking(3.0, Vec3<double>{1, 1, 7}, clock);
+  EXPECT_DOUBLE_EQ(node.shaking, -0.5 * 3 * (2 - 4));
+  column += node;
+  column += node;
+  column.add_to(clock);
+  EXPECT_DOUBLE_EQ(clock.budget.shaking_work, 6);
+  EXPECT_EQ(clock.budget.bed_loss, 0);
+}
+
+TEST(ShakingWork, clocks_add_up_to_the_velocity_of_the_ground) {
+  Clock clock;
+  Vec3<double> sum{};
+  for (const double step : {0.1, 0.7, 1e-4}) {
+    clock.step_size = step;
+    clock.shake({clock.shaking.velocity[0] + step * step, 1 + step, -3 * step});
+    sum += clock.ground_acceleration() * step;
+  }
+  expect_near(sum, {clock.shaking.velocity[0], 1 + 1e-4, -3e-4}, 1e-15);
+}
 
 /// A slope of 1 in 2 on a Cartesian grid whose datum is 4 m, without contact points or with some of an obstacle.
 struct Slope {
@@ -21,8 +133,7 @@ struct Slope {
   IntegratorSettings settings;
 
   explicit Slope(int contacts) {
-    Domain d = ground(12, 12, 1.0, 1.0, [](double x, double) { return 9.75 - 0.5 * x; });
-    fill(d, {4, 6, 4, 6, 0, 1});
+    Domain d = filled(ground(12, 12, 1.0, 1.0, [](double x, double) { return 9.75 - 0.5 * x; }), {4, 6, 4, 6, 0, 1});
     SolveOptions o;
     o.mapping = Mapping::cartesian;
     o.base.friction_angle = 45;
@@ -78,16 +189,13 @@ TEST(Surroundings, have_the_friction_of_bed_and_obstacles) {
 TEST(Surroundings, go_on_from_what_contact_points_gave_before) {
   const Slope slope(5);
   ContactState state;
-  for (std::size_t c = 0; c < slope.scene.contacts.size(); ++c) {
+  for (std::size_t c = 0; c < slope.scene.contacts.size(); ++c)
     for (int a = 0; a < 3; ++a) state.force.push_back(static_cast<double>(3 * c) + a);
-  }
   state.impulse = state.force;
   const auto surroundings = slope.make(state);
   EXPECT_EQ(surroundings.contact().state().force, state.force);
   EXPECT_EQ(surroundings.contact().state().impulse, state.impulse);
 }
-
-constexpr std::size_t column = 2 * SmallGrid::side + 5;
 
 struct Bounded {
   SmallGrid grid;
@@ -116,7 +224,7 @@ TEST(ColumnBoundary, finds_columns_while_the_batch_runs) {
   Bounded b;
   const SteppedColumn<double> at = b.at();
   EXPECT_TRUE(at.inside);
-  EXPECT_EQ(at.column, static_cast<int>(column));
+  EXPECT_EQ(at.column, static_cast<int>(SmallGrid::column));
   EXPECT_EQ(at.last - at.first, SmallGrid::layers);
   EXPECT_EQ(at.top_contact, 0);
   EXPECT_EQ(at.dt, 0.1);
@@ -143,9 +251,9 @@ TEST(ColumnBoundary, keeps_the_separation_velocity_for_tractions) {
   v.before = v.free = {0, 0, 2};
   b.boundary.meet(b.at(), 0, 100, NodeMass<double>{100}, v);
   b.boundary.finish(b.at(), 100.0, NoLosses{});
-  EXPECT_EQ(b.rise[column], 2);
-  EXPECT_EQ(b.mass[column], 100);
-  EXPECT_EQ(b.arrival[column], 0);
+  EXPECT_EQ(b.rise[SmallGrid::column], 2);
+  EXPECT_EQ(b.mass[SmallGrid::column], 100);
+  EXPECT_EQ(b.arrival[SmallGrid::column], 0);
 }
 
 TEST(RemapColumns, makes_velocity_of_momentum_without_friction) {
@@ -159,7 +267,7 @@ TEST(RemapColumns, makes_velocity_of_momentum_without_friction) {
   EXPECT_EQ(nodes[base].x, 3);
   EXPECT_EQ(nodes[base].z, 0) << "no penetration of the bed";
   EXPECT_EQ(nodes[above].z, -1);
-  EXPECT_EQ(b.arrival[column], -1) << "no maps";
+  EXPECT_EQ(b.arrival[SmallGrid::column], -1) << "no maps";
 }
 
 TEST(DeviceMaps, hold_what_kernels_left_in_what_the_run_started_from) {

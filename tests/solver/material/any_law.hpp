@@ -83,14 +83,19 @@ void expect_finite_energy_that_rest_has_not(const Material<double, Laws>& m) {
   }
 }
 
+/// The gradient less what changes the volume, or the stress less its pressure.
+inline Mat3<double> without_trace(Mat3<double> g) {
+  const double third = (g.a.x + g.b.y + g.c.z) / 3;
+  g.a.x -= third;
+  g.b.y -= third;
+  g.c.z -= third;
+  return g;
+}
+
 /// The change of a gradient g of this size that leaves the volume alone: dl = dG F^-1 without trace.
 inline Mat3<double> isochoric(const Mat3<double>& change, const Mat3<double>& g) {
   const Mat3<double> f{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}};
-  Mat3<double> l{change * inverted(f).a, change * inverted(f).b, change * inverted(f).c};
-  const double third = (l.a.x + l.b.y + l.c.z) / 3;
-  l.a.x -= third;
-  l.b.y -= third;
-  l.c.z -= third;
+  const Mat3<double> l = without_trace({change * inverted(f).a, change * inverted(f).b, change * inverted(f).c});
   return {l * f.a, l * f.b, l * f.c};
 }
 

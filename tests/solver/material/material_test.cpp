@@ -54,11 +54,30 @@ class Random {
   std::uniform_real_distribution<double> uniform_{-1, 1};
 };
 
-Material<double> sand(double friction = 30, double dilatancy = 0, double cohesion = 0, double cutoff = 0) {
+/// Drucker and Prager's law on one of its cones.
+Material<double> on_cone(Cone cone, double friction, double dilatancy = 0, double cohesion = 0, double cutoff = 0) {
+  MaterialOptions o;
+  o.model = MaterialModel::drucker_prager;
+  o.cone = cone;
+  o.friction_angle = friction;
+  o.dilatancy_angle = dilatancy;
+  o.cohesion = cohesion;
+  o.tension_cutoff = cutoff;
+  return make_material<double>(o);
+}
+
+/// Under the same pressure from all sides, compressed along each axis by a strain.
+MaterialState<double> compressed(const Material<double>& m, double strain) {
+  MaterialState<double> s;
+  advance_material(m, columns(Matrix(-strain * Matrix::Identity())), 0.01, s);
+  return s;
+}
+
+Material<double> sand(double dilatancy = 0, double cohesion = 0, double cutoff = 0) {
   MaterialOptions o;
   o.youngs_modulus = 1e7;
   o.poisson_ratio = 0.3;
-  o.friction_angle = friction;
+  o.friction_angle = 30;
   o.dilatancy_angle = dilatancy;
   o.cohesion = cohesion;
   o.tension_cutoff = cutoff;
@@ -178,7 +197,7 @@ double pressure_of(const Sym3<double>& tau) { return -trace(tau) / 3; }
 TEST(DruckerPrager, ends_on_or_inside_the_cone) {
   for (const double cohesion : {0.0, 1e4}) {
     for (const double dilatancy : {0.0, 10.0}) {
-      const auto m = sand(30, dilatancy, cohesion, 5e3);
+      const auto m = sand(dilatancy, cohesion, 5e3);
       Random random(6);
       for (int n = 0; n < 500; ++n) {
         MaterialState<double> s;
@@ -193,13 +212,8 @@ TEST(DruckerPrager, ends_on_or_inside_the_cone) {
 }
 
 TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
-  MaterialOptions o;
-  o.model = MaterialModel::drucker_prager;
-  o.cone = Cone::compression;
-  o.friction_angle = 31;
-  const auto m = make_material<double>(o);
-  MaterialState<double> s;
-  advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
+  const auto m = on_cone(Cone::compression, 31);
+  MaterialState<double> s = compressed(m, 1e-3);
   Matrix g = Matrix::Zero();
   g(2, 2) = -1e-4;
   g(0, 0) = g(1, 1) = 0.5e-4;
@@ -209,26 +223,12 @@ TEST(DruckerPrager, meets_mohr_coulomb_in_triaxial_compression) {
   EXPECT_NEAR(tau.zz / tau.xx, (1 + sine) / (1 - sine), 1e-3);
 }
 
-/// Sand of 31 degrees by this test, whose cohesion bears tension.
-Material<double> cohesive_sand(Cone cone, double dilatancy, double cohesion) {
-  MaterialOptions o;
-  o.model = MaterialModel::drucker_prager;
-  o.cone = cone;
-  o.friction_angle = 31;
-  o.dilatancy_angle = dilatancy;
-  o.cohesion = cohesion;
-  o.tension_cutoff = 1e6;
-  return make_material<double>(o);
-}
-
 TEST(DruckerPrager, meets_mohr_coulomb_in_plane_strain_for_its_own_flow) {
-  // Sheared in a plane, nothing across it: the circle in the plane must touch the line of 31 degrees whatever the
-  // dilatancy is.
+  // Sheared in a plane, nothing across it: for any dilatancy the circle in the plane touches the line of 31 degrees.
   const double sine = std::sin(31 * std::numbers::pi / 180), cohesion = 2e3;
   for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
-    const auto m = cohesive_sand(Cone::plane_strain, dilatancy, cohesion);
-    MaterialState<double> s;
-    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
+    const auto m = on_cone(Cone::plane_strain, 31, dilatancy, cohesion, 1e6);  // its cohesion bears tension
+    MaterialState<double> s = compressed(m, 1e-3);
     Matrix g = Matrix::Zero();
     g(2, 2) = -1e-5;
     g(0, 0) = 1e-5;
@@ -248,9 +248,8 @@ TEST(DruckerPrager, meets_mohr_coulomb_on_the_plane_that_slips) {
   // of 31 degrees whatever the dilatancy is.
   const double slope = std::tan(31 * std::numbers::pi / 180), cohesion = 2e3;
   for (const double dilatancy : {0.0, 1.0, 15.0, 31.0}) {
-    const auto m = cohesive_sand(Cone::simple_shear, dilatancy, cohesion);
-    MaterialState<double> s;
-    advance_material(m, columns(Matrix(-1e-4 * Matrix::Identity())), 0.01, s);
+    const auto m = on_cone(Cone::simple_shear, 31, dilatancy, cohesion, 1e6);
+    MaterialState<double> s = compressed(m, 1e-4);
     Matrix g = Matrix::Zero();
     g(0, 2) = 1e-6;
     const double start = pressure_of(kirchhoff_stress(m, s));
@@ -268,13 +267,8 @@ TEST(DruckerPrager, carries_no_tension_however_steep_its_cone) {
   // Pulled along one axis at constant volume, the worst that a cone can meet: the stress along it may vanish, not turn.
   for (const auto cone : {Cone::simple_shear, Cone::compression, Cone::extension, Cone::plane_strain}) {
     for (const double angle : {30.0, 40.0, 60.0, 85.0}) {
-      MaterialOptions o;
-      o.model = MaterialModel::drucker_prager;
-      o.cone = cone;
-      o.friction_angle = angle;
-      const auto m = make_material<double>(o);
-      MaterialState<double> s;
-      advance_material(m, columns(Matrix(-1e-4 * Matrix::Identity())), 0.01, s);
+      const auto m = on_cone(cone, angle);
+      MaterialState<double> s = compressed(m, 1e-4);
       Matrix g = Matrix::Zero();
       g(2, 2) = 1e-5;
       g(0, 0) = g(1, 1) = -0.5e-5;
@@ -365,9 +359,8 @@ TEST(DruckerPrager, dilates_as_it_shears_only_when_asked) {
   Matrix shear = Matrix::Zero();
   shear(0, 1) = 1e-4;
   for (const double dilatancy : {0.0, 5.0}) {
-    const auto m = sand(30, dilatancy);
-    MaterialState<double> s;
-    advance_material(m, columns(Matrix(-1e-3 * Matrix::Identity())), 0.01, s);
+    const auto m = sand(dilatancy);
+    MaterialState<double> s = compressed(m, 1e-3);
     const double before = pressure_of(kirchhoff_stress(m, s));
     for (int n = 0; n < 100; ++n) advance_material(m, columns(shear), 0.01, s);  // at constant volume
     const double after = pressure_of(kirchhoff_stress(m, s));

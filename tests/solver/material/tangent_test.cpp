@@ -1,19 +1,75 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Consistent tangents against finite differences, at random states and on the cone.
+// Lists of laws; consistent tangents against finite differences, at random states and on the cone.
 #include "solver/material/tangent.hpp"
-
-#include <gtest/gtest.h>
-
-#include <random>
-
+#include "solver/material/law.hpp"
+#include "solver/material/law_list.hpp"
+#include "solver/material/laws/elastic.hpp"
 #include "solver/material/point_tangent.hpp"
-#include "solver/material/strain.hpp"
+#include "solver/material/state.hpp"
 #include "solver/options/solve.hpp"
+#include "tests/solver/material/any_law.hpp"
 
-namespace talus::solver {
+namespace talus::testing {
 namespace {
 
+TEST(MaterialLaws, hold_what_every_law_must) { expect_laws_to_hold<MaterialLaws>(); }
+
+TEST(MaterialLaws, are_numbered_in_the_order_of_the_list) {
+  EXPECT_EQ(model_of<DruckerPrager>, MaterialModel::drucker_prager);
+  EXPECT_EQ(model_of<Hencky>, MaterialModel::hencky);
+  EXPECT_EQ(model_of<Corotated>, MaterialModel::corotated);
+  EXPECT_EQ(model_of<LinearElastic>, MaterialModel::linear_elastic);
+  EXPECT_EQ(model_of<NeoHookean>, MaterialModel::neo_hookean);
+  EXPECT_EQ(model_of<MuOfI>, MaterialModel::mu_of_i);
+  EXPECT_EQ(model_of<HerschelBulkley>, MaterialModel::herschel_bulkley);
+}
+
+TEST(MaterialLaws, load_gravity_elastically) {
+  const Sym3<double> strain{-3, -3, -6, 1, 2, 3};
+  for (const auto model : {MaterialModel::drucker_prager, MaterialModel::mu_of_i, MaterialModel::herschel_bulkley}) {
+    EXPECT_EQ(model_while_loading(model), MaterialModel::hencky);
+    EXPECT_EQ(trace(after_loading(model, strain)), 0);
+  }
+  for (const auto model : {MaterialModel::hencky, MaterialModel::corotated, MaterialModel::linear_elastic}) {
+    EXPECT_EQ(model_while_loading(model), model);
+    EXPECT_EQ(trace(after_loading(model, strain)), -12);
+  }
+}
+
+TEST(Material, of_sand_alone_is_no_larger_than_elasticity_model_and_cone) {
+  EXPECT_LE(sizeof(Material<double, LawList<DruckerPrager>>), 14 * sizeof(double));
+  EXPECT_LE(sizeof(Material<float, LawList<DruckerPrager>>), 14 * sizeof(float));
+  EXPECT_LE(sizeof(Material<double>), 30 * sizeof(double)) << "a kernel's arguments hold eight of them";
+}
+
+struct First {
+  static constexpr std::string_view name = "first";
+  static constexpr int number = 1;
+};
+struct Second {
+  static constexpr std::string_view name = "second";
+  static constexpr int number = 2;
+};
+using Both = LawList<First, Second>;
+
+TEST(LawLists, know_the_place_of_each_law) {
+  EXPECT_EQ(Both::count, 2);
+  EXPECT_EQ(Both::index_of<First>(), 0);
+  EXPECT_EQ(Both::index_of<Second>(), 1);
+  EXPECT_EQ(Both::names(), (std::vector<std::string_view>{"first", "second"}));
+}
+
+TEST(LawLists, show_the_law_of_a_number_and_all_laws_in_order) {
+  for (int index = 0; index < Both::count; ++index)
+    EXPECT_EQ(visit_law(Both{}, index, [](auto law) { return law.number; }), index + 1);
+  std::string all;
+  Both::each([&](auto law) { all += law.name; });
+  EXPECT_EQ(all, "firstsecond");
+}
+
+using solver::make_material;
+using solver::MaterialOptions;
 using M = Mat3<double>;
 
 /// Random gradients of a size.
@@ -34,9 +90,7 @@ class Gradients {
   std::uniform_real_distribution<double> u_{-1, 1};
 };
 
-M sum(const M& a, const M& b, double t) { return {a.a + b.a * t, a.b + b.b * t, a.c + b.c * t}; }
 double inner(const M& a, const M& b) { return dot(a.a, b.a) + dot(a.b, b.b) + dot(a.c, b.c); }
-double norm(const M& a) { return std::sqrt(inner(a, a)); }
 
 double worst_error(const Material<double>& m, const MaterialState<double>& start, const M& g, const M& direction,
                    double step) {
@@ -50,13 +104,15 @@ double worst_error(const Material<double>& m, const MaterialState<double>& start
   return norm(sum(difference, exact, -1)) / norm(exact);
 }
 
-Material<double> material(MaterialModel model) {
+template <class Real = double>
+Material<Real> material(MaterialModel model, double dilatancy = 0) {
   MaterialOptions o;
   o.model = model;
   o.friction_angle = 30;
+  o.dilatancy_angle = dilatancy;
   o.youngs_modulus = 1e7;
   o.poisson_ratio = 0.3;
-  return make_material<double>(o);
+  return make_material<Real>(o);
 }
 
 TEST(Tangent, of_hencky_elasticity_matches_finite_differences) {
@@ -110,18 +166,7 @@ TEST(Tangent, of_a_yielding_point_is_exact_but_for_the_pressure_in_its_friction)
     start.log_volume = -2e-3;
     const M g = random.draw<double>(3e-3);
     if (start.log_volume + log_volume_change(g) >= 0) continue;  // open: no stress, no stiffness
-    // Isochoric directions leave the pressure alone: dl = dG F^-1 without trace.
-    M direction = random.draw<double>(1);
-    const M f{{g.a.x + 1, g.a.y, g.a.z}, {g.b.x, g.b.y + 1, g.b.z}, {g.c.x, g.c.y, g.c.z + 1}};
-    const M l = [&] {
-      M d{direction * inverted(f).a, direction * inverted(f).b, direction * inverted(f).c};
-      const double third = (d.a.x + d.b.y + d.c.z) / 3;
-      d.a.x -= third;
-      d.b.y -= third;
-      d.c.z -= third;
-      return d;
-    }();
-    direction = {l * f.a, l * f.b, l * f.c};
+    const M direction = isochoric(random.draw<double>(1), g);    // which leaves the pressure alone
     MaterialState<double> end = start;
     advance_material(m, g, 0.01, end);
     const auto tau = kirchhoff_stress(m, end);
@@ -176,13 +221,7 @@ TEST(NominalStress, is_what_the_stress_update_ends_with) {
 
 template <class Real>
 Material<Real> sand_at_yield(double dilatancy, double apex) {
-  MaterialOptions o;
-  o.model = MaterialModel::drucker_prager;
-  o.friction_angle = 30;
-  o.dilatancy_angle = dilatancy;
-  o.youngs_modulus = 1e7;
-  o.poisson_ratio = 0.3;
-  auto m = make_material<Real>(o);
+  auto m = material<Real>(MaterialModel::drucker_prager, dilatancy);
   m.apex = static_cast<Real>(apex);
   return m;
 }
@@ -244,21 +283,11 @@ double moved_by_rounding(double share, double dilatancy, double apex) {
 TEST(YieldEdge, tangent_does_not_hang_on_rounding) {
   // Moved by 1e-14, the tangent may change by what 1e-14 of a stress is of its rounding in axes and stretches: 1e-10.
   // By the sign of the rounding it would change by as much as half the stiffness.
-  for (const double dilatancy : {0.0, 10.0}) {
+  for (const double dilatancy : {0.0, 10.0})
     for (const double apex : {0.0, 100.0})
       EXPECT_LT(moved_by_rounding<double>(1e-14, dilatancy, apex), 1e-9) << dilatancy << " deg, apex " << apex;
-  }
   // In single precision strains of 1e-3 are rounded to 1e-7 of themselves, and stretches to 1e-4 of their gaps.
   EXPECT_LT(moved_by_rounding<float>(1e-7, 0, 100), 1e-2);
-}
-
-/// The gradient less what changes the volume, or the stress less its pressure.
-Mat3<double> without_trace(Mat3<double> g) {
-  const double third = (g.a.x + g.b.y + g.c.z) / 3;
-  g.a.x -= third;
-  g.b.y -= third;
-  g.c.z -= third;
-  return g;
 }
 
 /// How far K dG is from the difference of the stresses at the start and a little way ahead, over that difference; of
@@ -322,4 +351,4 @@ TEST(YieldEdge, an_open_point_flows_whatever_way_it_goes) {
 }
 
 }  // namespace
-}  // namespace talus::solver
+}  // namespace talus::testing

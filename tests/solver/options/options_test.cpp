@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What keys of [solve] need of one another, and the texts of the refusals.
+// What keys of [solve], of inflows and of shaking need of one another, and the texts of the refusals.
+#include "solver/options/implicit.hpp"
+#include "solver/options/inflow.hpp"
+#include "solver/options/loads.hpp"
+#include "solver/options/output.hpp"
+#include "solver/options/scheme.hpp"
 #include "solver/options/solve.hpp"
-
-#include "solver/options/names.hpp"
-#include "solver/options/time.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/places.hpp"
 
@@ -15,12 +17,11 @@ namespace {
 std::string faults(const std::string& text) {
   const test::Scratch scratch;
   const recipe::Recipe recipe(scratch.write("r.toml", text));
-  try {
-    recipe.read<SolveOptions>("solve");
-  } catch (const RecipeError& error) {
-    return error.what();
-  }
-  return "";
+  return test::fault_of<RecipeError>([&] { recipe.read<SolveOptions>("solve"); });
+}
+
+void expect_words(const std::string& fault, const std::string& words) {
+  EXPECT_NE(fault.find(words), std::string::npos) << fault;
 }
 
 TEST(SolveOptions, vectors_and_boxes_have_their_number_of_values) {
@@ -30,22 +31,18 @@ TEST(SolveOptions, vectors_and_boxes_have_their_number_of_values) {
   EXPECT_EQ(faults("[solve]\ninitial_velocity_m_s = [0.0]"),
             "[solve] initial_velocity_m_s has 1 numbers (it is a vector: east, north, up). Give three: "
             "initial_velocity_m_s = [0.0, 0.0, 0.0]");
-  EXPECT_EQ(faults("[[solve.load]]\nextent_m = [1.0]\n[[solve.load]]\nforce_N = [1.0]"),
-            "[[solve.load]] extent_m or force_N has the wrong number of values (a box has six, a force three). Give "
-            "extent_m = [west, south, east, north, bottom, top] and force_N = [east, north, up]\n[[solve.load]] "
-            "extent_m or force_N has the wrong number of values (a box has six, a force three). Give extent_m = [west, "
-            "south, east, north, bottom, top] and force_N = [east, north, up]");
+  const std::string load =
+      "[[solve.load]] extent_m or force_N has the wrong number of values (a box has six, a force three). Give "
+      "extent_m = [west, south, east, north, bottom, top] and force_N = [east, north, up]";
+  EXPECT_EQ(faults("[[solve.load]]\nextent_m = [1.0]\n[[solve.load]]\nforce_N = [1.0]"), load + "\n" + load);
 }
 
 TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) {
-  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"newmark\""),
-            "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
-            "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
-            "\"explicit\"");
-  EXPECT_EQ(faults("[solve]\nenergy_budget = true\nstress_update = \"musl\""),
-            "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
-            "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
-            "\"explicit\"");
+  for (const std::string other : {"integrator = \"newmark\"", "stress_update = \"musl\""})
+    EXPECT_EQ(faults("[solve]\nenergy_budget = true\n" + other),
+              "[solve] energy_budget = true does not go with this integrator or stress_update (losses are counted in "
+              "explicit and column-implicit steps with stress_update = \"usl\"). Leave it out, or take integrator = "
+              "\"explicit\"");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\nintegrator = \"auto\""), "");
   EXPECT_EQ(faults("[solve]\nenergy_budget = true\n[[solve.obstacle]]\nname=\"a\""),
             "[[solve.obstacle]] does not go with energy_budget = true (what is lost between nodes is not counted). "
@@ -53,15 +50,12 @@ TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) 
 }
 
 TEST(SolveOptions, keys_of_deleted_solvers_are_refused_with_advice) {
-  EXPECT_NE(faults("[solve.implicit]\npreconditioner = \"multigrid\"")
-                .find("[solve.implicit] preconditioner: no longer a key. Leave it out; it is the 3 x 3 block of each "
-                      "node"),
-            std::string::npos);
-  EXPECT_NE(faults("[solve.implicit]\nlinear_solver = \"bicgstab\"").find("(no longer a choice). Take"),
-            std::string::npos);
+  expect_words(faults("[solve.implicit]\npreconditioner = \"multigrid\""),
+               "[solve.implicit] preconditioner: no longer a key. Leave it out; it is the 3 x 3 block of each node");
+  expect_words(faults("[solve.implicit]\nlinear_solver = \"bicgstab\""), "(no longer a choice). Take");
   for (const std::string key : {"ground_contact = \"nodes\"", "[solve.implicit]\noperator = \"points\"",
                                 "[solve.implicit]\ntangent = \"frozen-yield\""})
-    EXPECT_NE(faults("[solve]\n" + key).find(": no longer a key. Leave it out"), std::string::npos) << key;
+    expect_words(faults("[solve]\n" + key), ": no longer a key. Leave it out");
 }
 
 TEST(SolveOptions, obstacles_need_a_solver_without_assembly) {
@@ -107,34 +101,29 @@ TEST(SolveOptions, separation_comes_back_from_the_recipe_as_used) {
 }
 
 TEST(SolveOptions, repeated_bits_need_explicit_steps_without_a_budget) {
-  EXPECT_EQ(faults("[solve]\ndeterministic = true\nintegrator = \"newmark\""),
-            "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
-            "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
-            "without energy_budget");
-  EXPECT_EQ(faults("[solve]\ndeterministic = true\nenergy_budget = true"),
-            "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
-            "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
-            "without energy_budget");
+  for (const std::string other : {"integrator = \"newmark\"", "energy_budget = true"})
+    EXPECT_EQ(
+        faults("[solve]\ndeterministic = true\n" + other),
+        "[solve] deterministic = true does not go with this integrator or with energy_budget (sums of implicit "
+        "steps and of the budget are made in any order on a GPU). Leave it out, or take integrator = \"explicit\" "
+        "without energy_budget");
   EXPECT_EQ(faults("[solve]\ndeterministic = true\nintegrator = \"auto\""), "");
 }
 
 TEST(SolveOptions, means_over_elements_need_implicit_steps_and_a_pressure_of_the_volume) {
-  EXPECT_EQ(faults("[solve]\n[solve.implicit]\nb_bar=true"),
-            "[solve.implicit] b_bar = true has no effect on explicit steps (only implicit steps average the volume "
-            "change). Leave it out, or take integrator = \"newmark\" or \"quasi-static\"");
-  EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\n[solve.implicit]\nb_bar=true"),
-            "[solve.implicit] b_bar = true has no effect on explicit steps (only implicit steps average the volume "
-            "change). Leave it out, or take integrator = \"newmark\" or \"quasi-static\"");
-  EXPECT_EQ(
-      faults("[solve]\nintegrator=\"newmark\"\n[solve.implicit]\nb_bar=true\n[solve.material]\nmodel=\"corotated\""),
-      "[solve.implicit] b_bar = true does not go with this [solve.material] model (its pressure does not follow from "
-      "the volume change alone). Take model = \"hencky\" or \"drucker-prager\"");
-  EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\n[solve.implicit]\nb_bar=true\n[[solve.part]]\nrelease=\"x\"\nmodel="
-                   "\"corotated\""),
-            "[solve.implicit] b_bar = true does not go with this [solve.material] model (its pressure does not follow "
-            "from the volume change alone). Take model = \"hencky\" or \"drucker-prager\"\n[solve.implicit] b_bar = "
-            "true has no effect on explicit steps (only implicit steps average the volume change). Leave it out, or "
-            "take integrator = \"newmark\" or \"quasi-static\"");
+  const std::string
+      b_bar = "[solve.implicit]\nb_bar=true\n",
+      explicit_steps =
+          "[solve.implicit] b_bar = true has no effect on explicit steps (only implicit steps average the "
+          "volume change). Leave it out, or take integrator = \"newmark\" or \"quasi-static\"",
+      model =
+          "[solve.implicit] b_bar = true does not go with this [solve.material] model (its pressure does "
+          "not follow from the volume change alone). Take model = \"hencky\" or \"drucker-prager\"";
+  EXPECT_EQ(faults("[solve]\n" + b_bar), explicit_steps);
+  EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\n" + b_bar), explicit_steps);
+  EXPECT_EQ(faults("[solve]\nintegrator=\"newmark\"\n" + b_bar + "[solve.material]\nmodel=\"corotated\""), model);
+  EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\n" + b_bar + "[[solve.part]]\nrelease=\"x\"\nmodel=\"corotated\""),
+            model + "\n" + explicit_steps);
 }
 
 TEST(SolveOptions, gauges_have_names_of_their_own) {
@@ -151,9 +140,9 @@ TEST(SolveOptions, walls_parts_and_names_have_their_limits) {
             "letters, digits, - and _\n[[solve.obstacle]] number 2: name = \"\" (its forces are recorded under its "
             "name). Give it one of letters, digits, - and _\n[[solve.obstacle]] name = \"c\" is given twice (its "
             "forces are recorded under its name). Rename one");
-  EXPECT_EQ(faults("[[solve.part]]\nrelease=\"x0\"\n[[solve.part]]\nrelease=\"x1\"\n[[solve.part]]\nrelease=\"x2\"\n[["
-                   "solve.part]]\nrelease=\"x3\"\n[[solve.part]]\nrelease=\"x4\"\n[[solve.part]]\nrelease=\"x5\"\n[["
-                   "solve.part]]\nrelease=\"x6\"\n[[solve.part]]\nrelease=\"x7\""),
+  std::string parts;
+  for (const char name : std::string("01234567")) parts += std::string("[[solve.part]]\nrelease=\"x") + name + "\"\n";
+  EXPECT_EQ(faults(parts),
             "[[solve.part]] is given 8 times (a scene has at most 8 materials). Give releases of the same material the "
             "same name, or leave some out");
 }
@@ -184,27 +173,24 @@ TEST(SolveOptions, at_most_as_many_walls_as_kernels_hold) {
 }
 
 TEST(SolveOptions, a_key_that_is_gone_is_refused_with_advice) {
-  const std::string found = faults("[solve]\nflip_fraction = 0.95");
-  EXPECT_NE(found.find("[solve] flip_fraction: no longer a key. Give transfer_time_s"), std::string::npos) << found;
+  expect_words(faults("[solve]\nflip_fraction = 0.95"), "[solve] flip_fraction: no longer a key. Give transfer_time_s");
 }
 
 TEST(SolveOptions, an_accuracy_is_for_the_integrator_that_chooses) {
   EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.01"), "");
-  EXPECT_NE(faults("[solve]\naccuracy=0.01")
-                .find("[solve] accuracy has no effect (it belongs to integrator = "
-                      "\"auto\")"),
-            std::string::npos);
-  EXPECT_NE(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.5").find("accuracy = 0.5"), std::string::npos);
+  expect_words(faults("[solve]\naccuracy=0.01"),
+               "[solve] accuracy has no effect (it belongs to integrator = \"auto\")");
+  expect_words(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.5"), "accuracy = 0.5");
 }
 
 TEST(SolveOptions, what_follows_from_accuracy_is_not_given_beside_it) {
-  const std::string asked = "[solve]\nintegrator=\"auto\"\naccuracy=0.01\n", why = " (it follows from accuracy)";
-  EXPECT_NE(faults(asked + "cfl=0.3").find("[solve] cfl beside accuracy" + why), std::string::npos);
+  expect_words(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.01\ncfl=0.3"),
+               "[solve] cfl beside accuracy (it follows from accuracy)");
 }
 
 TEST(SolveOptions, steps_longer_than_lone_points_bear_are_for_columns) {
   EXPECT_EQ(faults("[solve]\ncfl=0.8"), "");
-  EXPECT_NE(faults("[solve]\ncfl=0.9").find("[solve] cfl = 0.9 is too large"), std::string::npos);
+  expect_words(faults("[solve]\ncfl=0.9"), "[solve] cfl = 0.9 is too large");
   EXPECT_EQ(faults("[solve]\ncfl=1.5\nintegrator=\"column-implicit\""), "");
   EXPECT_NE(faults("[solve]\ncfl=1.6\nintegrator=\"column-implicit\""), "");
 }
@@ -226,21 +212,14 @@ TEST(SolveOptions, what_goes_together_is_taken) {
 }
 
 TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
-  EXPECT_TRUE(abilities_of(Integrator::explicit_).count_losses);
-  EXPECT_FALSE(abilities_of(Integrator::explicit_).solve_systems);
-  for (const Integrator some : {Integrator::explicit_, Integrator::automatic}) EXPECT_TRUE(abilities_of(some).obey_cfl);
-  for (const Integrator some : {Integrator::newmark, Integrator::quasi_static})
-    EXPECT_FALSE(abilities_of(some).obey_cfl);
-  for (const Integrator some : {Integrator::explicit_, Integrator::newmark, Integrator::automatic})
-    EXPECT_TRUE(abilities_of(some).carry_inertia);
-  EXPECT_FALSE(abilities_of(Integrator::quasi_static).carry_inertia);
-  for (const Integrator some : {Integrator::newmark, Integrator::quasi_static}) {
-    EXPECT_TRUE(abilities_of(some).average_volume);
-    EXPECT_FALSE(abilities_of(some).count_losses);
-  }
-  EXPECT_TRUE(abilities_of(Integrator::automatic).solve_systems);
-  EXPECT_FALSE(abilities_of(Integrator::automatic).average_volume) << "some of its steps are explicit";
-  EXPECT_TRUE(abilities_of(Integrator::automatic).count_losses) << "it takes no others where losses are counted";
+  const auto steps = abilities_of(Integrator::explicit_), chosen = abilities_of(Integrator::automatic),
+             newmark = abilities_of(Integrator::newmark), statics = abilities_of(Integrator::quasi_static);
+  EXPECT_TRUE(steps.count_losses && steps.obey_cfl && steps.carry_inertia && !steps.solve_systems);
+  EXPECT_TRUE(newmark.average_volume && newmark.carry_inertia && !newmark.obey_cfl && !newmark.count_losses);
+  EXPECT_TRUE(statics.average_volume && !statics.carry_inertia && !statics.obey_cfl && !statics.count_losses);
+  EXPECT_TRUE(chosen.obey_cfl && chosen.carry_inertia && chosen.solve_systems);
+  EXPECT_FALSE(chosen.average_volume) << "some of its steps are explicit";
+  EXPECT_TRUE(chosen.count_losses) << "it takes no others where losses are counted";
 }
 
 /// The TOML of the page on materials that gives one.
@@ -276,8 +255,8 @@ TEST(SolveOptions, what_a_preset_sets_is_not_given_otherwise_beside_it) {
 }
 
 TEST(SolveOptions, a_preset_refuses_what_its_steps_cannot_do) {
-  EXPECT_NE(faults("[solve]\npreset = \"reference\"\nenergy_budget = true").find("energy_budget"), std::string::npos);
-  EXPECT_NE(faults("[solve]\npreset = \"reference\"\ndeterministic = true").find("deterministic"), std::string::npos);
+  for (const std::string key : {"energy_budget", "deterministic"})
+    expect_words(faults("[solve]\npreset = \"reference\"\n" + key + " = true"), key);
   EXPECT_EQ(faults("[solve]\npreset = \"reference\"\n[solve.implicit]\nb_bar = true"), "");
 }
 
@@ -307,9 +286,113 @@ TEST(SolveOptions, friction_of_mu_of_i_grows_with_the_rate) {
       faults("[solve.material]\nmodel = \"mu-of-i\"\nstatic_friction_angle_deg = 33.0"),
       "[solve.material] limiting_friction_angle_deg = 32.76 is not above static_friction_angle_deg = 33 (friction "
       "grows with the rate of shear). Swap the two, or take model = \"drucker-prager\"");
-  EXPECT_NE(faults("[solve.material]\nslow_flow = \"creep\"\nstatic_friction_angle_deg = 32.5")
-                .find("slow_flow = \"creep\" does not go with friction angles of 32.5 to 32.76 deg"),
-            std::string::npos);
+  expect_words(faults("[solve.material]\nslow_flow = \"creep\"\nstatic_friction_angle_deg = 32.5"),
+               "slow_flow = \"creep\" does not go with friction angles of 32.5 to 32.76 deg");
+}
+
+const std::string line = "line_m = [[0.0, 5.0], [10.0, 5.0]]\n";
+const std::string rows = "hydrograph = [[0.0, 3.0], [60.0, 0.0]]\n";
+
+/// What a recipe with these lines in [solve] and in [[solve.inflow]] is refused with; empty where it is sound.
+std::string inflow_faults(const std::string& inflow, const std::string& solve = "") {
+  return faults("[solve]\n" + solve + "\n[[solve.inflow]]\n" + inflow);
+}
+
+TEST(InflowOptions, take_a_line_a_hydrograph_and_one_of_speed_depth_and_froude_number) {
+  for (const char* one : {"speed_m_s = 4.0", "depth_m = 1.0", "froude = 1.1"})
+    EXPECT_EQ(inflow_faults(line + rows + one), "");
+  EXPECT_EQ(inflow_faults(line + "file = \"q.csv\"\nspeed_m_s = 4.0"), "");
+  expect_words(inflow_faults(line + rows), "0 of speed_m_s, depth_m and froude are given");
+  expect_words(inflow_faults(line + rows + "speed_m_s = 4.0\nfroude = 1.0"), "2 of speed_m_s");
+  expect_words(inflow_faults(rows + "froude = 1.0"), "line_m has 0 points");
+  expect_words(inflow_faults("line_m = [[1.0, 5.0], [1.0, 5.0]]\n" + rows + "froude = 1.0"), "one point");
+}
+
+TEST(InflowOptions, refuse_rows_that_are_no_hydrograph) {
+  const std::string rest = line + "froude = 1.0\n";
+  expect_words(inflow_faults(rest), "neither file nor hydrograph");
+  expect_words(inflow_faults(rest + rows + "file = \"q.csv\""), "file beside hydrograph");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0], [5.0, 2.0], [5.0, 3.0]]"), "5 before 5");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0], [5.0]]"),
+               "hydrograph[1] (a row of two numbers is wanted)");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0]]"), "has one row");
+  expect_words(inflow_faults(rest + "hydrograph = [[0.0, 1.0], [5.0, -2.0]]"), "hydrograph[1][1] = -2");
+}
+
+TEST(InflowOptions, go_with_every_integrator_that_has_inertia) {
+  const std::string inflow = line + rows + "froude = 1.0\n";
+  for (const char* integrator : {"explicit", "column-implicit", "newmark", "auto"})
+    EXPECT_EQ(inflow_faults(inflow, std::string("integrator = \"") + integrator + "\""), "");
+  expect_words(inflow_faults(inflow, "integrator = \"quasi-static\""), "does not go with integrator");
+}
+
+TEST(InflowOptions, are_called_by_their_number_or_a_name_that_is_theirs_alone) {
+  InflowOptions o;
+  EXPECT_EQ(inflow_name(o, 1), "inflow-2");
+  o.name = "gully";
+  EXPECT_EQ(inflow_name(o, 1), "gully");
+  const std::string one = "name = \"a\"\n" + line + rows + "froude = 1.0\n";
+  expect_words(inflow_faults(one + "[[solve.inflow]]\n" + one), "\"a\" is given twice");
+}
+
+/// What a recipe with these lines in [solve] and in [solve.shaking] is refused with; empty where it is sound.
+std::string shaking_faults(const std::string& solve, const std::string& shaking) {
+  return faults("[solve]\n" + solve + "\n[solve.shaking]\n" + shaking);
+}
+
+TEST(ShakingOptions, go_with_every_integrator_that_has_inertia) {
+  const std::string file = "file = \"record.csv\"";
+  for (const char* integrator : {"explicit", "column-implicit", "newmark", "auto"})
+    EXPECT_EQ(shaking_faults(std::string("integrator = \"") + integrator + "\"", file), "");
+  EXPECT_EQ(shaking_faults("preset = \"reference\"", file), "");
+  EXPECT_EQ(shaking_faults("integrator = \"quasi-static\"", file),
+            "[solve.shaking] does not go with integrator = \"quasi-static\" (shaking acts by inertia, which a sequence "
+            "of equilibria leaves out). Take integrator = \"explicit\", \"column-implicit\" or \"newmark\"; for a "
+            "pseudo-static analysis leave [solve.shaking] out and tilt gravity_m_s2");
+}
+
+TEST(ShakingOptions, say_nothing_without_a_file) {
+  EXPECT_EQ(shaking_faults("integrator = \"quasi-static\"", ""), "");
+  for (const char* key : {"scale = 2.0", "unit = \"g\"", "start_s = 1.0", "azimuth_deg = 0.0"})
+    EXPECT_EQ(shaking_faults("", key),
+              "[solve.shaking] without file (the other keys say how an accelerogram is read). Name one: file = "
+              "\"record.csv\", or leave the table out");
+}
+
+TEST(ShakingOptions, refuse_what_would_not_shake) {
+  EXPECT_EQ(shaking_faults("", "file = \"record.csv\"\nscale = 0.0"),
+            "[solve.shaking] scale = 0 (the accelerogram would have no effect). Leave [solve.shaking] out, or give "
+            "another scale");
+  EXPECT_EQ(shaking_faults("end_time_s = 10.0", "file = \"record.csv\"\nstart_s = 10.0"),
+            "[solve.shaking] start_s = 10 with end_time_s = 10 (the run ends before the ground shakes). Give a smaller "
+            "start_s, or a larger end_time_s");
+}
+
+TEST(Hindrances, none_stand_in_the_way_of_a_plain_recipe) {
+  const SolveOptions o;
+  EXPECT_FALSE(beyond_columns(o));
+  EXPECT_FALSE(beyond_rest(o));
+}
+
+TEST(Hindrances, of_columns_are_walls_above) {
+  SolveOptions o;
+  o.obstacles.emplace_back();
+  o.walls.push_back({.axis = Axis::z, .material_is = Side::above});
+  EXPECT_FALSE(beyond_columns(o));
+  o.walls.push_back({.axis = Axis::z, .material_is = Side::below});
+  EXPECT_EQ(beyond_columns(o).key, "a [[solve.wall]] across z above the material");
+}
+
+TEST(Hindrances, of_rest_are_named_by_their_key) {
+  const auto key = [](auto change) {
+    SolveOptions o;
+    change(o);
+    return beyond_rest(o).key;
+  };
+  EXPECT_EQ(key([](SolveOptions& o) { o.material.model = MaterialModel::mu_of_i; }), "model = \"mu-of-i\"");
+  EXPECT_EQ(key([](SolveOptions& o) { o.base.separation = Separation::thin; }), "[solve.base] separation = \"thin\"");
+  EXPECT_EQ(key([](SolveOptions& o) { o.deterministic = true; }), "[solve] deterministic = true");
+  EXPECT_EQ(key([](SolveOptions& o) { o.energy_budget = true; }), "[solve] energy_budget = true");
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 // Work that repeats, recorded on a GPU and done as it is given on the CPU; memory of the host.
 #include "solver/parallel/recording.hpp"
 
+#include "solver/parallel/for_each.hpp"
 #include "solver/parallel/host_room.hpp"
-#include "solver/parallel/launch.hpp"
-#include "tests/solver/on_each_device.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {

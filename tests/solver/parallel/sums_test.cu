@@ -3,9 +3,8 @@
 // Sums, runs of equal keys, vectors over the nodes and layers of columns, on both devices, against plain loops.
 #include "solver/parallel/sums.hpp"
 
+#include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/columns.hpp"
-#include "solver/parallel/runs.hpp"
-#include "solver/parallel/vectors.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {

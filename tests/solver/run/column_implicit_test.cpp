@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps with inertia implicit along columns: closed forms of a block and a slab in steps that the height of the layers
 // does not bound, and the deposit of explicit steps.
-#include "tests/solver/run/speed_inside.hpp"
+#include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
 namespace {
-
-constexpr double to_radians = std::numbers::pi / 180;
 
 /// A block 6 m square on a plane that falls to the east and a bit to the north.
 struct LayeredBlock {
@@ -17,25 +15,19 @@ struct LayeredBlock {
   ShapeKind shape = ShapeKind::quadratic;
 
   Domain domain() const {
-    const double slope = std::tan(angle * to_radians);
-    Domain d = ground(56, 30, 1.0, layer_height,
-                      [&](double x, double y) { return 100 - slope * (0.96 * x + 0.28 * (y - 15)); });
-    fill(d, {8, 14, 8, 14, 0, 2});
-    return d;
+    const double slope = std::tan(angle * degree);
+    return filled(ground(56, 30, 1.0, layer_height,
+                         [&](double x, double y) { return 100 - slope * (0.96 * x + 0.28 * (y - 15)); }),
+                  {8, 14, 8, 14, 0, 2});
   }
   SolveOptions options() const {
-    SolveOptions o;
-    o.integrator = Integrator::column_implicit;
+    SolveOptions o = elastic_options(2e8, Integrator::column_implicit);
     o.shape = shape;
-    o.material.model = MaterialModel::hencky;
-    o.material.youngs_modulus = 2e8;
     o.base.friction_angle = friction;
     return o;
   }
   /// Along the slope, without drag [m/s2].
-  double acceleration() const {
-    return 9.81 * (std::sin(angle * to_radians) - std::tan(friction * to_radians) * std::cos(angle * to_radians));
-  }
+  double acceleration() const { return sliding_acceleration(angle, friction); }
 };
 
 /// What a run came to.
@@ -52,6 +44,7 @@ class ColumnImplicit : public InEachPlace {
     return {std::hypot(end.x - run.first.x, end.y - run.first.y), run.solver->clock().step};
   }
 };
+TALUS_IN_EACH_PLACE(ColumnImplicit);
 
 TEST_P(ColumnImplicit, slide_as_coulomb_says_whatever_the_layers) {
   constexpr double time = 1.5;
@@ -59,10 +52,8 @@ TEST_P(ColumnImplicit, slide_as_coulomb_says_whatever_the_layers) {
   for (const LayeredBlock& c :
        {LayeredBlock{30, 20, 1}, LayeredBlock{45, 10, 0.125}, LayeredBlock{30, 20, 0.25, ShapeKind::gimp}}) {
     const Ran r = ran(c, c.options(), time);
-    const double expected = 0.5 * c.acceleration() * time * time * std::cos(c.angle * to_radians);
-    std::printf("  %g deg, bed %g deg, layers of %g m, %s: error %.3f %%, %lld steps\n", c.angle, c.friction,
-                c.layer_height, name_of(c.shape), 100 * (r.way / expected - 1), static_cast<long long>(r.steps));
-    EXPECT_LT(std::abs(r.way / expected - 1), 0.01);  // validation.md B1
+    const double expected = 0.5 * c.acceleration() * time * time * std::cos(c.angle * degree);
+    EXPECT_LT(std::abs(r.way / expected - 1), 0.01) << c.layer_height;  // validation.md B1
     if (steps_of_high_layers == 0) steps_of_high_layers = r.steps;
     // Explicit steps of layers of an eighth are seven times as many. The share that the climb has stays.
     EXPECT_LT(static_cast<double>(r.steps), 1.5 * static_cast<double>(steps_of_high_layers));
@@ -72,7 +63,7 @@ TEST_P(ColumnImplicit, slide_as_coulomb_says_whatever_the_layers) {
 TEST_P(ColumnImplicit, slide_as_coulomb_says_in_the_longest_steps) {
   const LayeredBlock c{30, 20, 0.25};
   constexpr double time = 1.5;
-  const double expected = 0.5 * c.acceleration() * time * time * std::cos(c.angle * to_radians);
+  const double expected = 0.5 * c.acceleration() * time * time * std::cos(c.angle * degree);
   SolveOptions o = c.options();
   o.material.model = MaterialModel::drucker_prager;
   o.material.friction_angle = 40;
@@ -81,9 +72,7 @@ TEST_P(ColumnImplicit, slide_as_coulomb_says_in_the_longest_steps) {
   for (const double cfl : {1.0, 1.5}) {
     o.cfl = cfl;
     const Ran r = ran(c, o, time);
-    std::printf("  %g CFL: error %.3f %%, %lld steps\n", cfl, 100 * (r.way / expected - 1),
-                static_cast<long long>(r.steps));
-    EXPECT_LT(std::abs(r.way / expected - 1), 0.01);  // validation.md B1
+    EXPECT_LT(std::abs(r.way / expected - 1), 0.01) << cfl;  // validation.md B1
     EXPECT_LT(static_cast<double>(r.steps), 0.55 / cfl * static_cast<double>(usual));
   }
 }
@@ -108,8 +97,7 @@ TEST_P(ColumnImplicit, throw_no_point_that_lands_by_itself) {
 
 TEST_P(ColumnImplicit, keep_a_post_of_single_points_standing) {
   // Nothing forgets its stress up to 0.5 CFL, nor what holds tension in any steps that it may take (T6d).
-  Domain d = ground(12, 12, 1.0, 1.0, [](double, double) { return 0.0; });
-  fill(d, {5, 6, 5, 6, 0, 4}, 1, 2);
+  Domain d = filled(ground(12, 12, 1.0, 1.0, flat), {5, 6, 5, 6, 0, 4}, 1, 2);
   const auto sinks = [&](MaterialModel model, double cfl) {
     SolveOptions o = LayeredBlock{0, 30, 1}.options();
     o.material.model = model;
@@ -140,9 +128,9 @@ TEST_P(ColumnImplicit, reach_the_speed_at_which_voellmys_drag_and_weight_balance
   o.base.law = FrictionLaw::voellmy;
   o.base.turbulence = 30;
   constexpr double time = 2;
-  const double across = 2 * std::cos(c.angle * to_radians), pull = c.acceleration(),
+  const double across = 2 * std::cos(c.angle * degree), pull = c.acceleration(),
                last = std::sqrt(pull * o.base.turbulence * across / 9.81),
-               expected = last * last / pull * std::log(std::cosh(pull * time / last)) * std::cos(c.angle * to_radians);
+               expected = last * last / pull * std::log(std::cosh(pull * time / last)) * std::cos(c.angle * degree);
   EXPECT_LT(std::abs(ran(c, o, time).way / expected - 1), 0.02);  // validation.md B1 at two cells
 }
 
@@ -162,22 +150,17 @@ TEST_P(ColumnImplicit, slide_alike_whatever_the_scheme_around_them) {
 /// A block on a level Cartesian grid under gravity that is tilted, on ground between two layers, and on a wall.
 TEST_P(ColumnImplicit, slide_on_cartesian_grids_and_on_walls) {
   constexpr double angle = 30, friction = 20, time = 1.5;
-  const double g = 9.81, expected = 0.5 * g *
-                                    (std::sin(angle * to_radians) -
-                                     std::tan(friction * to_radians) * std::cos(angle * to_radians)) *
-                                    time * time;
+  const double g = 9.81, expected = 0.5 * sliding_acceleration(angle, friction) * time * time;
   for (const bool on_wall : {false, true}) {
-    Domain d = ground(56, 30, 1.0, 0.25, [](double, double) { return 0.0; });
-    fill(d, {8, 14, 8, 14, on_wall ? 1.0 : 0.0, on_wall ? 3.0 : 2.0});
+    Domain d = filled(ground(56, 30, 1.0, 0.25, flat), {8, 14, 8, 14, on_wall ? 1.0 : 0.0, on_wall ? 3.0 : 2.0});
     SolveOptions o = LayeredBlock{angle, friction, 0.25}.options();
     o.mapping = Mapping::cartesian;
-    o.gravity = {g * std::sin(angle * to_radians), 0, -g * std::cos(angle * to_radians)};
+    o.gravity = {g * std::sin(angle * degree), 0, -g * std::cos(angle * degree)};
     if (on_wall) o.walls.push_back({Axis::z, 1.0, Side::above, WallKind::frictional, friction});
     const SceneRun run(d, o, GetParam());
     const Centre end = run.at(time);
-    std::printf("  Cartesian%s: error %.3f %%, %lld steps\n", on_wall ? ", on a wall" : "",
-                100 * ((end.x - run.first.x) / expected - 1), static_cast<long long>(run.solver->clock().step));
-    EXPECT_NEAR(end.x - run.first.x, expected, 0.01 * expected);  // validation.md B1
+    EXPECT_NEAR(end.x - run.first.x, expected, 0.01 * expected)
+        << (on_wall ? "on a wall" : "on the ground");  // validation.md B1
     EXPECT_NEAR(end.z, run.first.z, 0.02);
   }
 }
@@ -201,24 +184,16 @@ struct Bounce {
   double height() const { return layers * layer; }
   Domain domain() const {
     const double cell = over * layer;
-    Domain d = ground(8, 8, cell, layer, [](double, double) { return 0.0; });
-    fill(d, {2 * cell, 6 * cell, 2 * cell, 6 * cell, 0, height()}, 2, 2);
-    return d;
+    return filled(ground(8, 8, cell, layer, flat), {2 * cell, 6 * cell, 2 * cell, 6 * cell, 0, height()}, 2, 2);
   }
   SolveOptions options(Integrator integrator, double step) const {
     const double cell = over * layer;
-    SolveOptions o;
-    o.integrator = integrator;
-    o.material.model = MaterialModel::hencky;
-    o.material.youngs_modulus = modulus;
+    SolveOptions o = elastic_options(modulus, integrator);
     o.material.density = density;
     o.base.law = FrictionLaw::none;
     o.transfer_time = 1e30;
     o.largest_step = step;
-    for (const Axis axis : {Axis::x, Axis::y}) {
-      o.walls.push_back({axis, 2 * cell, Side::above, WallKind::roller});
-      o.walls.push_back({axis, 6 * cell, Side::below, WallKind::roller});
-    }
+    o.walls = rollers(2 * cell, 6 * cell);
     return o;
   }
   /// The time of the third change of sign of its momentum, over 1.5 [s].
@@ -244,9 +219,8 @@ TEST_P(ColumnImplicit, slow_waves_along_the_column_as_the_theory_says) {
     const double slow = b.measured(Integrator::column_implicit, b.step(), GetParam()),
                  true_one = b.measured(Integrator::explicit_, fine, GetParam());
     const double expected = b.period(b.step(), column_kappa) / b.period(fine, 0);
-    std::printf("  %d layers, cells %g times as wide: period %.4f s, explicit %.4f s: %.3f (theory %.3f)\n", b.layers,
-                b.over, slow, true_one, slow / true_one, expected);
-    EXPECT_NEAR(slow / true_one, expected, 0.05 * expected);  // overtones make a share of the momentum
+    EXPECT_NEAR(slow / true_one, expected, 0.05 * expected)
+        << b.layers << " layers";  // overtones make a share of the momentum
   }
 }
 
@@ -274,13 +248,12 @@ struct Slump {
   StressUpdate update = StressUpdate::last;
   /// The deposit after four seconds, and the steps.
   std::pair<std::vector<double>, std::int64_t> run(Integrator integrator, On on) const {
-    Domain d = ground(40, 24, 1.0, 0.25, [](double x, double) { return 50 - std::tan(15 * to_radians) * x; });
+    Domain d = ground(40, 24, 1.0, 0.25, [](double x, double) { return 50 - std::tan(15 * degree) * x; });
     fill(d, {6, 12, 9, 15, 0, 4}, 2, 2);
-    SolveOptions o;
-    o.integrator = integrator;
+    SolveOptions o = stepping_by(integrator);
+    o.material.youngs_modulus = 2e7;
     o.mapping = mapping;
     o.stress_update = update;
-    o.material.youngs_modulus = 2e7;
     o.material.friction_angle = 30;
     o.base.law = law;
     o.base.friction_angle = 20;
@@ -297,21 +270,11 @@ TEST_P(ColumnImplicit, leave_the_deposit_of_explicit_steps) {
                              Slump{.law = FrictionLaw::velocity_weakening}, Slump{.mapping = Mapping::cartesian}}) {
     const auto [deposit, many] = slump.run(Integrator::explicit_, GetParam());
     const auto [by_columns, few] = slump.run(Integrator::column_implicit, GetParam());
-    double apart = 0, all = 0;
-    for (std::size_t n = 0; n < deposit.size(); ++n) {
-      apart += 0.5 * std::abs(by_columns[n] - deposit[n]);
-      all += deposit[n];
-    }
-    std::printf("  %.2f %% of the deposit elsewhere, %lld steps for %lld\n", 100 * apart / all,
-                static_cast<long long>(few), static_cast<long long>(many));
-    // Twice what a change of cfl from 0.5 to 0.25 moves in explicit steps: 0.44 %, and 1.71 % on the steps that level
-    // layers make of the slope.
-    EXPECT_LT(apart, (slump.mapping == Mapping::cartesian ? 0.035 : 0.01) * all);
+    // Twice what a change of cfl from 0.5 to 0.25 moves in explicit steps: 0.44 %, and 1.71 % on steps of level layers.
+    EXPECT_LT(share_elsewhere(by_columns, deposit), slump.mapping == Mapping::cartesian ? 0.035 : 0.01);
     EXPECT_LT(2.5 * static_cast<double>(few), static_cast<double>(many));
   }
 }
-
-TALUS_IN_EACH_PLACE(ColumnImplicit);
 
 }  // namespace
 }  // namespace talus::solver::testing

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes that are hard on purpose (docs/explanation/validation.md, C): each ends with the invariant it names.
-#include <cstdio>
 #include <random>
 
-#include "solver/run/gravity_loading.hpp"
+#include "solver/run/run_loop.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -20,20 +19,25 @@ constexpr Way ways[] = {{"explicit, quadratic", Integrator::explicit_, ShapeKind
                         {"column-implicit, quadratic", Integrator::column_implicit, ShapeKind::quadratic},
                         {"newmark, quadratic", Integrator::newmark, ShapeKind::quadratic}};
 
-constexpr Integrator flow_integrators[] = {Integrator::explicit_, Integrator::column_implicit};
-
 SolveOptions options_for(const Way& way) {
-  SolveOptions o;
-  o.integrator = way.integrator;
+  SolveOptions o = stepping_by(way.integrator);
   o.shape = way.shape;
   o.implicit.newton_tolerance = 1e-4;
   return o;
 }
 
-double total(const Energies& e) { return e.kinetic + e.potential + e.elastic; }
-
 class HardCases : public InEachPlace {
  protected:
+  /// How far the centre of a scene goes between two times [m].
+  static double creep(const Scene& scene, const SolveOptions& o, double from, double to) {
+    const auto solver = make_solver(scene, o, GetParam());
+    run_to(*solver, from);
+    const Centre start = centre(*solver, scene);
+    run_to(*solver, to);
+    const Centre end = centre(*solver, scene);
+    return std::hypot(end.x - start.x, end.y - start.y, end.z - start.z);
+  }
+
   /// Runs to `end` and gives `look` the energies every `interval`.
   template <class Look>
   static std::unique_ptr<Solver> watch(const Scene& scene, const SolveOptions& o, double end, double interval,
@@ -49,11 +53,11 @@ class HardCases : public InEachPlace {
     return solver;
   }
 };
+TALUS_IN_EACH_PLACE(HardCases);
 
 /// Points that carry a billionth of the others' mass, in a body and alone.
 Domain with_slivers(double height) {
-  Domain d = ground(24, 24, 1.0, 1.0, [](double, double) { return 0.0; });
-  fill(d, {8, 12, 8, 12, height, height + 4});
+  Domain d = filled(ground(24, 24, 1.0, 1.0, flat), {8, 12, 8, 12, height, height + 4});
   for (std::size_t p = 0; p < d.points.size(); p += 3) d.points.volume[p] *= 1e-9;
   fill(d, {15, 15.5, 15, 15.5, height, height + 0.5});  // one alone in its cells
   return d;
@@ -67,13 +71,11 @@ TEST_P(HardCases, slivers_fly_with_the_body) {  // C4
     o.gravity = {0, 0, 0};
     o.initial_velocity = {3, -2, 1};
     o.implicit.step = 0.02;
-    const auto solver = make_solver(make_scene(d, o), o, GetParam());
-    run_to(*solver, 0.5);
-    const ParticleState s = solver->state().points;
+    const SceneRun run(d, o, GetParam(), 0.5);
+    const ParticleState s = run.solver->state().points;
     double worst = 0;
-    for (std::size_t p = 0; p < s.size(); ++p) {
+    for (std::size_t p = 0; p < s.size(); ++p)
       for (std::size_t a = 0; a < 3; ++a) worst = std::max(worst, std::abs(s.velocity[a][p] - o.initial_velocity[a]));
-    }
     // Rounding of the velocity's differences times stiffness over mass, as far as the step allows.
     EXPECT_LT(worst, 1e-9);
   }
@@ -99,8 +101,7 @@ TEST_P(HardCases, energy_never_grows_where_slivers_fall_with_sand) {  // C4, C6
 }
 
 TEST_P(HardCases, impact_at_fifty_metres_a_second_stays_above_the_rock) {  // C5
-  Domain d = ground(48, 48, 1.0, 1.0, [](double, double) { return 0.0; });
-  fill(d, {22, 26, 22, 26, 1, 5});
+  Domain d = filled(ground(48, 48, 1.0, 1.0, flat), {22, 26, 22, 26, 1, 5});
   for (const Way& way : ways) {
     SCOPED_TRACE(way.name);
     SolveOptions o = options_for(way);
@@ -125,13 +126,11 @@ TEST_P(HardCases, impact_at_fifty_metres_a_second_stays_above_the_rock) {  // C5
 
 /// What weight, rock and wall gave is what the mass has: 1e-6 of what it came with (validation.md C5).
 TEST_P(HardCases, impact_on_rock_and_wall_balances_momentum) {
-  Domain d = ground(48, 120, 1.0, 1.0, [](double x, double) { return 0.1 * x; });
-  fill(d, {22, 26, 58, 62, 1, 5});
+  Domain d = filled(ground(48, 120, 1.0, 1.0, [](double x, double) { return 0.1 * x; }), {22, 26, 58, 62, 1, 5});
   for (const auto& [integrator, law] : {std::pair{Integrator::explicit_, FrictionLaw::coulomb},
                                         {Integrator::explicit_, FrictionLaw::stick},
                                         {Integrator::column_implicit, FrictionLaw::coulomb}}) {
-    SolveOptions o;
-    o.integrator = integrator;
+    SolveOptions o = stepping_by(integrator);
     o.energy_budget = true;
     o.initial_velocity = {50, 5, -20};
     o.base.law = law;
@@ -193,11 +192,9 @@ TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C
 }
 
 TEST_P(HardCases, a_deposit_stays_where_it_came_to_rest) {  // C8
-  Domain d = ground(30, 30, 2.0, 2.0, [](double, double) { return 0.0; });
-  fill(d, {24, 36, 24, 36, 0, 10});
+  Domain d = filled(ground(30, 30, 2.0, 2.0, flat), {24, 36, 24, 36, 0, 10});
   for (const Integrator integrator : flow_integrators) {
-    SolveOptions o;
-    o.integrator = integrator;
+    SolveOptions o = stepping_by(integrator);
     o.material.youngs_modulus =
         2e6;  // the weight of 10 m strains it by a tenth: the softest that is still at rest as a solid is
     const SceneRun run(d, o, GetParam());
@@ -205,31 +202,33 @@ TEST_P(HardCases, a_deposit_stays_where_it_came_to_rest) {  // C8
     const double volume = run.solver->energies().volume;
     const Centre later = run.at(660);
     const double creep = std::hypot(later.x - settled.x, later.y - settled.y, later.z - settled.z);
-    std::printf("  at rest for 600 s: centre of mass moved by %.1e cells\n", creep / 2);
     EXPECT_LT(creep, 0.01 * 2);
     EXPECT_EQ(run.solver->energies().volume, volume);
   }
 }
 
+Domain ground_of_20_degrees(double layer) {
+  return ground(40, 16, 1.0, layer, [](double x, double) { return -std::tan(20 * M_PI / 180) * x; });
+}
+
+SolveOptions slab_on_a_bed_of_25_degrees() {
+  SolveOptions o = stepping_by(Integrator::newmark);
+  o.material.youngs_modulus = 1e8;
+  o.base.friction_angle = 25;
+  o.material.cohesion = 5e4;  // its upright faces stand
+  o.implicit.newton_tolerance = 1e-6;
+  return o;
+}
+
 TEST_P(HardCases, a_slab_below_its_friction_angle_rests_in_long_steps_too) {
-  // On 20 degrees with a bed of 25; from zero stress and from geostatic stress, in steps of 10 CFL, and of 200, where
-  // Newton finds its way on smoothed friction first and may not stay there. 1e-4 of its length in 60 s, so a sixth of
-  // that in 10 s.
+  // On 20 degrees with a bed of 25; from zero and from geostatic stress, in steps of 10 CFL, and of 200, where Newton
+  // first finds its way on smoothed friction and may not stay there. 1e-4 of its length in 60 s, a sixth in 10 s.
   constexpr double length = 12;
-  Domain d = ground(40, 16, 1.0, 1.0, [](double x, double) { return -std::tan(20 * M_PI / 180) * x; });
+  Domain d = ground_of_20_degrees(1);
   fill(d, {10, 10 + length, 5, 11, 0, 2});
-  struct Rest {
-    bool geostatic;
-    double cfl;
-  };
-  for (const auto& [geostatic, cfl] : {Rest{false, 10}, Rest{true, 10}, Rest{true, 200}}) {
-    SolveOptions o;
-    o.integrator = Integrator::newmark;
-    o.base.friction_angle = 25;
-    o.material.youngs_modulus = 1e8;
-    o.material.cohesion = 5e4;  // its upright faces stand
+  for (const auto& [geostatic, cfl] : {std::pair{false, 10.0}, {true, 10.0}, {true, 200.0}}) {
+    SolveOptions o = slab_on_a_bed_of_25_degrees();
     o.material.tension_cutoff = 1e4;
-    o.implicit.newton_tolerance = 1e-6;
     const double wave = make_material<double>(o.material).wave_speed;
     o.implicit.step = cfl / (wave * std::sqrt(3.0));
     o.gravity_ramp = geostatic ? 0 : 1;  // from zero stress the weight comes within a second, not as a blow
@@ -245,65 +244,36 @@ TEST_P(HardCases, a_slab_below_its_friction_angle_rests_in_long_steps_too) {
         scene.points.elastic[0][p] = scene.points.elastic[1][p] = -0.5 * scene.points.elastic[2][p];
       }
     }
-    const auto solver = make_solver(scene, o, GetParam());
-    run_to(*solver, 5);
-    const Centre start = centre(*solver, scene);
-    run_to(*solver, 65);
-    const Centre end = centre(*solver, scene);
-    const double creep = std::hypot(end.x - start.x, end.z - start.z);
-    std::printf("  slab at rest, %s stress, %g CFL: %.1e of its length in 60 s\n", geostatic ? "geostatic" : "zero",
-                cfl, creep / length);
-    EXPECT_LT(creep, 1e-4 * length);
+    EXPECT_LT(creep(scene, o, 5, 65), 1e-4 * length) << cfl;
   }
 }
 
 TEST_P(HardCases, a_slab_that_has_settled_does_not_creep) {
   // On 20 degrees with a bed of 25, a minute after it was let go with its weight in place: less than a nanometre a
   // second in 600 s, in steps of 1,250 CFL.
-  Domain d = ground(40, 16, 1.0, 0.5, [](double x, double) { return -std::tan(20 * M_PI / 180) * x; });
-  fill(d, {10, 18, 5, 9, 0, 2});
-  SolveOptions o;
-  o.integrator = Integrator::newmark;
-  o.base.friction_angle = 25;
-  o.material.youngs_modulus = 1e8;
-  o.material.cohesion = 5e4;  // its upright faces stand
-  o.implicit.newton_tolerance = 1e-6;
+  SolveOptions o = slab_on_a_bed_of_25_degrees();
   o.implicit.step = 2;
   o.gravity_loading_steps = 4;
-  Scene scene = make_scene(d, o);
+  Scene scene = make_scene(filled(ground_of_20_degrees(0.5), {10, 18, 5, 9, 0, 2}), o);
   scene.points = loaded_by_gravity(scene, o, make_device(GetParam()));
-  const auto solver = make_solver(scene, o, GetParam());
-  run_to(*solver, 60);
-  const Centre start = centre(*solver, scene);
-  run_to(*solver, 660);
-  const Centre end = centre(*solver, scene);
-  const double creep = std::hypot(end.x - start.x, end.y - start.y, end.z - start.z) / 600;
-  std::printf("  slab that has settled: %.1e m/s in 600 s\n", creep);
-  EXPECT_LT(creep, 1e-9);
+  EXPECT_LT(creep(scene, o, 60, 660) / 600, 1e-9);
 }
 
 TEST_P(HardCases, far_coordinates_and_other_sizes_change_nothing) {  // C10
   Integrator integrator = Integrator::explicit_;
   const auto slide = [&](double west, double south, double scale) {
-    Domain d = ground(40, 20, scale, 0.5 * scale, [&](double x, double) { return scale * 20 - 0.5 * (x - west); });
-    d.grid.west = west;
-    d.grid.south = south;
-    for (Raster* raster : {&d.terrain, &d.before, &d.release_thickness}) raster->grid = d.grid;
-    for (int i = 0; i < 40; ++i) {
-      for (int j = 0; j < 20; ++j) d.terrain.at(i, j) = d.before.at(i, j) = scale * 20 - 0.5 * (d.grid.x(i) - west);
-    }
+    Domain d = ground(
+        40, 20, scale, 0.5 * scale, [&](double x, double) { return scale * 20 - 0.5 * (x - west); }, west, south);
     fill(d, {6 * scale, 12 * scale, 6 * scale, 12 * scale, 0, 2 * scale});
     for (std::size_t p = 0; p < d.points.size(); ++p) {
       d.points.x[p] += west;
       d.points.y[p] += south;
     }
-    SolveOptions o;
-    o.integrator = integrator;
+    SolveOptions o = stepping_by(integrator);
     o.material.youngs_modulus = 1e6 * scale;  // the same in the scale of its own weight, and of time
     o.largest_step = 1e3;
-    const auto solver = make_solver(make_scene(d, o), o, GetParam());
-    run_to(*solver, 2 * std::sqrt(scale));
-    std::vector<double> map = solver->thickness();
+    const SceneRun run(d, o, GetParam(), 2 * std::sqrt(scale));
+    std::vector<double> map = run.solver->thickness();
     for (double& t : map) t /= scale;
     return map;
   };
@@ -328,33 +298,20 @@ TEST_P(HardCases, single_precision_ends_within_the_discretisation_error) {  // C
   Domain d = ground(60, 20, 2.0, 1.0, [](double x, double) { return x < 70 ? 0.4 * (70 - x) * (70 - x) / 70 : 0.0; });
   fill(d, {10, 26, 12, 28, 0, 4});
   const auto deposit = [&](Integrator integrator, Precision precision, double courant) {
-    SolveOptions o;
-    o.integrator = integrator;
+    SolveOptions o = stepping_by(integrator);
     o.precision = precision;
     o.cfl = courant;
-    const auto solver = make_solver(make_scene(d, o), o, GetParam());
-    run_to(*solver, 15);
-    return solver->thickness();
-  };
-  const auto elsewhere = [](const std::vector<double>& a, const std::vector<double>& b) {
-    double moved = 0, all = 0;
-    for (std::size_t n = 0; n < a.size(); ++n) {
-      moved += 0.5 * std::abs(a[n] - b[n]);
-      all += b[n];
-    }
-    return moved / all;
+    const SceneRun run(d, o, GetParam(), 15);
+    return run.solver->thickness();
   };
   for (const Integrator integrator : flow_integrators) {
     const auto whole = deposit(integrator, Precision::double_, 0.5);
-    const double single = elsewhere(deposit(integrator, Precision::single_, 0.5), whole),
-                 step = elsewhere(deposit(integrator, Precision::double_, 0.25), whole);
-    std::printf("  deposit elsewhere: single precision %.2f %%, half the step %.2f %%\n", 100 * single, 100 * step);
+    const double single = share_elsewhere(deposit(integrator, Precision::single_, 0.5), whole),
+                 step = share_elsewhere(deposit(integrator, Precision::double_, 0.25), whole);
     EXPECT_LT(single, step);
     EXPECT_LT(single, 0.01);
   }
 }
-
-TALUS_IN_EACH_PLACE(HardCases);
 
 }  // namespace
 }  // namespace talus::solver::testing

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run from its first record to its last, from event to event, and from domain.vdb to run.h5.
-#include "solver/run/run_loop.hpp"
+// A run from its first record to its last, from event to event, from domain.vdb to run.h5, and its products.
+#include <numeric>
 
+#include "solver/run/products.hpp"
+#include "solver/run/run_loop.hpp"
 #include "solver/run/run_stage.hpp"
-#include "solver/run/schedule.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/solver/ensemble/ensemble_scene.hpp"
 #include "tests/solver/plans.hpp"
@@ -15,12 +16,11 @@ namespace {
 constexpr double rise = 0.5;  ///< of the ramp, over its way
 
 Domain block_on_a_ramp() {
-  Domain d = ground(24, 12, 1.0, 1.0, [](double x, double) { return rise * x; });
-  fill(d, {14, 18, 4, 8, 0, 1});
-  return d;
+  return filled(ground(24, 12, 1.0, 1.0, [](double x, double) { return rise * x; }), {14, 18, 4, 8, 0, 1});
 }
 
 class RunToItsEnd : public InEachPlace {};
+TALUS_IN_EACH_PLACE(RunToItsEnd);
 
 /// A block that slides from rest without friction is fastest at the end: the last row of the history and the map of
 /// peak speed know of it, whether or not the points are due to be sorted at that very step.
@@ -28,9 +28,7 @@ TEST_P(RunToItsEnd, is_recorded_wherever_points_are_sorted) {
   const test::Scratch scratch;
   const RunPaths files(scratch.folder());
   const Domain domain = block_on_a_ramp();
-  SolveOptions options;
-  options.material.model = MaterialModel::hencky;
-  options.material.youngs_modulus = 1e6;
+  SolveOptions options = elastic_options(1e6);
   options.base.law = FrictionLaw::none;
   options.largest_step = 0.01;
   const double gain = 0.01 * 9.81 * rise / std::sqrt(1 + rise * rise);  // of speed, in a step
@@ -48,19 +46,12 @@ TEST_P(RunToItsEnd, is_recorded_wherever_points_are_sorted) {
   }
 }
 
-TALUS_IN_EACH_PLACE(RunToItsEnd);
-
-Domain column_of_sand() {
-  Domain d = ground(16, 16, 1.0, 1.0, [](double, double) { return 0.0; });
-  fill(d, {4, 12, 4, 12, 0, 4});
-  return d;
-}
+Domain column_of_sand() { return filled(ground(16, 16, 1.0, 1.0, flat), {4, 12, 4, 12, 0, 4}); }
 
 TEST(Stepper, meets_events_and_knows_its_step_over_the_cfl_step) {
   const Domain d = column_of_sand();
   for (const Integrator integrator : {Integrator::explicit_, Integrator::automatic}) {
-    SolveOptions o;
-    o.integrator = integrator;
+    SolveOptions o = stepping_by(integrator);
     const Scene scene = make_scene(d, o);
     Stepper stepper(scene, o, CpuDevice::make());
     EXPECT_FALSE(stepper.begun());
@@ -77,8 +68,7 @@ TEST(Stepper, meets_events_and_knows_its_step_over_the_cfl_step) {
 
 TEST(Stepper, chooses_no_implicit_steps_where_a_law_does_not_take_them) {
   const Domain d = column_of_sand();
-  SolveOptions o;
-  o.integrator = Integrator::automatic;
+  SolveOptions o = stepping_by(Integrator::automatic);
   for (const auto model : {MaterialModel::drucker_prager, MaterialModel::neo_hookean, MaterialModel::mu_of_i,
                            MaterialModel::herschel_bulkley}) {
     o.material.model = model;
@@ -138,12 +128,11 @@ TEST_F(RunStage, warns_of_what_is_accepted_for_nothing) {
 }
 
 TEST_F(RunStage, goes_on_from_the_checkpoint_that_is_named) {
-  EXPECT_FALSE(checkpoint_of({}, out()));
-  EXPECT_FALSE(checkpoint_of({.resume = true}, out())) << "that one is taken where it is there";
-  EXPECT_EQ(checkpoint_of({.restart = fs::path()}, out()), out() / "checkpoint.h5");
-  EXPECT_EQ(checkpoint_of({.restart = fs::path("other.h5")}, out()), fs::path("other.h5"));
   StageContext context = this->context();
-  EXPECT_THROW(run(context, {.restart = fs::path()}, options()), DataError) << "there is none";
+  for (const fs::path& named : {fs::path(), fs::path("other.h5")}) {
+    const std::string fault = test::fault_of<DataError>([&] { run(context, {.restart = named}, options()); });
+    EXPECT_NE(fault.find(named.empty() ? "checkpoint.h5" : "other.h5"), std::string::npos) << fault;
+  }
 }
 
 SolveOptions some_options() {
@@ -155,10 +144,16 @@ SolveOptions some_options() {
   return o;
 }
 
+RunMemory counted(int frames, int records) {
+  RunMemory memory;
+  memory.frames = frames;
+  memory.records = records;
+  return memory;
+}
+
 TEST(Schedule, next_event_is_the_first_of_record_frame_and_end) {
   const Schedule schedule(some_options());
-  RunMemory passed;
-  passed.frames = passed.records = 1;
+  RunMemory passed = counted(1, 1);
   EXPECT_EQ(schedule.next_event(0, passed), 0.5);
   passed.records = 5;
   EXPECT_EQ(schedule.next_event(1.9, passed), 2);
@@ -172,9 +167,7 @@ TEST(Schedule, end_and_an_event_a_rounding_before_it_are_one) {
   o.end_time = 5.4;
   ASSERT_LT(18 * o.history_interval, o.end_time);
   const Schedule schedule(o);
-  RunMemory passed;
-  passed.frames = 4;
-  passed.records = 18;
+  RunMemory passed = counted(4, 18);
   EXPECT_EQ(schedule.next_event(5.2, passed), 5.4);
   passed.records = 17;
   EXPECT_EQ(schedule.next_event(5.0, passed), 17 * 0.3);
@@ -187,13 +180,10 @@ TEST(Schedule, end_and_an_event_a_rounding_before_it_are_one) {
 
 TEST(Schedule, no_step_goes_over_a_wall_that_goes_or_a_load_that_comes) {
   SolveOptions o = some_options();
-  o.walls.resize(1);
-  o.walls[0].to = 0.3;
-  o.loads.resize(1);
-  o.loads[0].from = 0.25;
+  o.walls.emplace_back().to = 0.3;
+  o.loads.emplace_back().from = 0.25;
   const Schedule schedule(o);
-  RunMemory passed;
-  passed.frames = passed.records = 1;
+  const RunMemory passed = counted(1, 1);
   EXPECT_EQ(schedule.next_event(0, passed), 0.25);
   EXPECT_EQ(schedule.next_event(0.25, passed), 0.3);
   EXPECT_EQ(schedule.next_event(0.25 * (1 - 1e-13), passed), 0.3) << "events a rounding apart are one";
@@ -202,9 +192,7 @@ TEST(Schedule, no_step_goes_over_a_wall_that_goes_or_a_load_that_comes) {
 
 TEST(Schedule, events_a_rounding_away_are_due) {
   const Schedule schedule(some_options());
-  RunMemory passed;
-  passed.records = 3;
-  passed.frames = 1;
+  RunMemory passed = counted(1, 3);
   EXPECT_FALSE(schedule.record_due(1.4999, passed));
   EXPECT_TRUE(schedule.record_due(1.5 * (1 - 1e-14), passed));
   EXPECT_FALSE(schedule.frame_due(1.5, passed));
@@ -227,10 +215,94 @@ TEST(Schedule, checkpoints_come_after_each_interval_and_never_without_one) {
 
 TEST(Schedule, an_end_between_two_frames_asks_for_one_more) {
   const Schedule schedule(some_options());
-  RunMemory passed;
-  passed.frames = 4;  // those of 0, 2, 4 and 6 s
+  const RunMemory passed = counted(4, 0);  // those of 0, 2, 4 and 6 s
   EXPECT_TRUE(schedule.ends_between_frames(7, passed));
   EXPECT_FALSE(schedule.ends_between_frames(6, passed));
+}
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+/// A sheet of ground (release 0) of 8 m3 beside a block (release 1) of 4 m3.
+class Products : public ::testing::Test {
+ protected:
+  Products() : domain_(ground(20, 20, 1.0, 1.0, flat)) {
+    fill(domain_, {4, 8, 4, 6, 0, 1});
+    const std::size_t sheet = domain_.points.size();
+    fill(domain_, {12, 14, 12, 14, 0, 1});
+    for (std::size_t p = sheet; p < domain_.points.size(); ++p) domain_.points.release[p] = 1;
+    domain_.release_names = {"ground", "block"};
+    domain_.erodible = 1;
+    scene_ = make_scene(domain_, options_);
+    state_ = first_state(scene_, make_settings(options_, scene_.grid).common);
+    everywhere_ = thickness_of(scene_, options_, scene_.points, [](std::size_t) { return true; });
+  }
+  RunEnd end() const { return {domain_, options_, scene_, state_, everywhere_}; }
+  /// Moves a point east by whole cells.
+  void move(std::size_t p, int cells) { state_.points.cell[0][p] += cells; }
+
+  Domain domain_;
+  SolveOptions options_;
+  Scene scene_;
+  SolverState state_;
+  std::vector<double> everywhere_;
+};
+
+TEST_F(Products, ground_belongs_to_the_slide_once_it_moved_by_more_than_a_cell) {
+  EXPECT_FALSE(belongs_to_slide(end(), 0));
+  EXPECT_TRUE(belongs_to_slide(end(), domain_.points.size() - 1));
+  move(0, 1);
+  EXPECT_FALSE(belongs_to_slide(end(), 0));
+  move(0, 1);
+  EXPECT_TRUE(belongs_to_slide(end(), 0));
+}
+
+TEST_F(Products, volumes_close) {
+  move(0, 3);
+  const SlideVolumes v = slide_volumes(end(), 0);
+  EXPECT_NEAR(v.released, 4, 1e-12);
+  EXPECT_NEAR(v.entrained, 0.125, 1e-12);
+  EXPECT_NEAR(v.final, 4.125, 1e-12);
+  domain_.erodible = 0;
+  EXPECT_NEAR(slide_volumes(end(), 0).released, 12, 1e-12);
+  EXPECT_EQ(slide_volumes(end(), 0).entrained, 0);
+}
+
+TEST_F(Products, maps_tell_releases_and_ground_apart) {
+  move(0, 3);
+  state_.maps.arrival_time[5] = 2;
+  state_.maps.peak_pressure[5] = 3000;
+  const auto now = thickness_of(scene_, options_, state_.points, [](std::size_t) { return true; });
+  const RunMaps maps = final_maps(end(), now);
+  ASSERT_EQ(maps.deposit_of.size(), 2U);
+  EXPECT_EQ(maps.deposit_of[0].first, "ground");
+  EXPECT_NEAR(sum(maps.deposit_of[0].second), 0.125, 1e-12);
+  EXPECT_NEAR(sum(maps.deposit_of[1].second), 4, 1e-12);
+  EXPECT_NEAR(sum(maps.deposit_thickness), 4.125, 1e-12);
+  EXPECT_NEAR(sum(maps.initial_thickness), 4, 1e-12);
+  EXPECT_NEAR(sum(maps.eroded_depth), 0.125, 1e-12);
+  EXPECT_EQ(maps.peak_pressure_kPa[5], 3);
+  EXPECT_EQ(maps.arrival_time[5], 2);
+  EXPECT_TRUE(std::isnan(maps.arrival_time[6]));
+}
+
+TEST(GravityLoading, gives_the_points_the_stress_of_the_mass_at_rest) {
+  Domain d = ground(12, 12, 1.0, 1.0, flat);
+  fill(d, {1.5, 10.5, 1.5, 10.5, 0, 4});  // between walls that go through nodes
+  SolveOptions o;
+  o.gravity_loading_steps = 2;
+  o.walls = rollers(1.5, 10.5);
+  Scene scene = make_scene(d, o);
+  scene.points = loaded_by_gravity(scene, o, CpuDevice::make());
+  const ParticleState& s = scene.points;
+  // Confined compression: sigma_zz = -rho g (H - z) gives the volume strain sigma_zz / M.
+  const Material<double> m = make_material<double>(o.material);
+  const double modulus = m.bulk_modulus + 4 * m.shear_modulus / 3;
+  for (std::size_t p = 0; p < s.size(); ++p) {
+    const double expected = -2000 * 9.81 * (4 - d.points.height[p]) / modulus;
+    EXPECT_NEAR(s.log_volume[p], expected, 0.08 * 2000 * 9.81 * 4 / modulus) << "at height " << d.points.height[p];
+    EXPECT_NEAR(s.elastic[0][p] + s.elastic[1][p] + s.elastic[2][p], 0, 1e-12) << "the volume is kept apart";
+    EXPECT_EQ(s.velocity[2][p], 0);
+  }
 }
 
 }  // namespace

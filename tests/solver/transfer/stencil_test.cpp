@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "solver/transfer/company.hpp"
-#include "solver/transfer/point_gradients.hpp"
+#include "solver/transfer/grid_to_particle.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/small_grid.hpp"
 
 namespace talus::solver::testing {
@@ -72,10 +72,9 @@ TYPED_TEST(Stencils, find_the_nodes_where_the_grid_stores_them) {
     const GridView<double> view = grid.view();
     const Stencil<double, TypeParam> s(view, point.view(), 0);
     for (int a = 0; a < TypeParam::width; ++a) {
-      for (int b = 0; b < TypeParam::width; ++b) {
+      for (int b = 0; b < TypeParam::width; ++b)
         for (int c = 0; c < TypeParam::width; ++c)
           EXPECT_EQ(s.node(s.column(view, a, b), c), view.find(s.i + a, s.j + b, std::max(s.k + c, 0)));
-      }
     }
   }
 }
@@ -85,9 +84,8 @@ double alone(OnePoint point, const std::function<double(const Stencil<double, Qu
   const SmallGrid grid;
   const Stencil<double, Quadratic> s(grid.view(), point.view(), 0);
   Company<double> company;
-  for (int b = 0; b < 3; ++b) {
+  for (int b = 0; b < 3; ++b)
     for (int a = 0; a < 3; ++a) company.add(mass(s, a, b), s.wx[a], s.wy[b]);
-  }
   return company.alone(s);
 }
 
@@ -166,9 +164,7 @@ TYPED_TEST(PointGradientsOf, a_linear_field_are_exact) {
     EXPECT_EQ(nodes, TypeParam::width * TypeParam::width * TypeParam::width);
     constexpr double bound = 1e-12;  // of 27 terms, each up to 50, over half a metre
     EXPECT_NEAR(value, 1 + dot(slope, point.place(grid)), bound);
-    EXPECT_NEAR(gradient.x, slope.x, bound);
-    EXPECT_NEAR(gradient.y, slope.y, bound);
-    EXPECT_NEAR(gradient.z, slope.z, bound);
+    expect_near(gradient, slope, bound);
   }
 }
 

@@ -1,22 +1,75 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws of depth-averaged models against their published formulas, and two laws put into the list behind them.
-#include "solver/boundary/laws/pouliquen.hpp"
-
+// Friction by a table, laws of depth-averaged models against their formulas, and two laws put into the list.
 #include "solver/boundary/laws/coulomb.hpp"
 #include "solver/boundary/laws/frictionless.hpp"
-#include "solver/boundary/laws/none.hpp"
+#include "solver/boundary/laws/pouliquen.hpp"
 #include "solver/boundary/laws/samosat.hpp"
-#include "solver/boundary/laws/stick.hpp"
+#include "solver/boundary/laws/table.hpp"
 #include "solver/boundary/laws/velocity_weakening.hpp"
-#include "solver/boundary/laws/voellmy.hpp"
-#include "solver/boundary/slip.hpp"
 #include "solver/options/solve.hpp"
 #include "tests/solver/boundary/any_law.hpp"
 #include "tests/solver/boundary/laws/speed_power.hpp"
 
 namespace talus::testing {
 namespace {
+
+BaseFriction<double> bed_of(recipe::Pairs rows) {
+  OptionsOfLaws<FrictionLaws> o;
+  o.table = std::move(rows);
+  return some_bed<FrictionTable, FrictionLaws>(o);
+}
+
+/// Rows of a coefficient as large as the speed.
+recipe::Pairs as_many(int rows) {
+  recipe::Pairs table;
+  for (int row = 0; row < rows; ++row) table.push_back({1.0 * row, 1.0 * row});
+  return table;
+}
+
+template <class Real>
+Real coefficient(const BaseFriction<Real>& f, Real speed) {
+  return f.coefficient(f.uniform, {speed, 0, Real(0.01)});
+}
+
+TEST(FrictionTable, is_linear_between_its_rows_and_constant_beyond_them) {
+  const auto f = bed_of({{0.5, 0.7}, {1, 0.5}, {3, 0.1}});
+  for (const auto& [speed, mu] :
+       {std::pair{0.0, 0.7}, {0.5, 0.7}, {0.75, 0.6}, {1.0, 0.5}, {2.0, 0.3}, {3.0, 0.1}, {1e9, 0.1}})
+    EXPECT_DOUBLE_EQ(coefficient(f, speed), mu) << speed;
+  EXPECT_FLOAT_EQ(coefficient(f.as<float>(), 2.0F), 0.3F);
+  EXPECT_FLOAT_EQ(coefficient(f.as<float>(), 1e9F), 0.1F);
+}
+
+TEST(FrictionTable, may_have_one_row_and_the_most_rows) {
+  EXPECT_EQ(coefficient(bed_of({{2, 0.4}}), 0.0), 0.4);
+  EXPECT_EQ(coefficient(bed_of({{2, 0.4}}), 9.0), 0.4);
+  const auto f = bed_of(as_many(FrictionTable::most_rows));  // mu = v
+  for (const double speed : {0.0, 0.3, 22.5, 23.0}) EXPECT_DOUBLE_EQ(coefficient(f, speed), speed);
+  EXPECT_EQ(coefficient(f, 24.0), 23);
+}
+
+TEST(FrictionTable, carries_its_share_of_the_normal_stress) {
+  double numbers[FrictionTable::constant_count];
+  FrictionTable::constants(OptionsOfLaws<FrictionLaws>{}, {.borne = 0.25, .density = 0, .gravity = 0}, numbers);
+  EXPECT_EQ(numbers[FrictionTable::mu], 0.25 * 0.6);
+  EXPECT_EQ(numbers[FrictionTable::speed + 1], 10);
+}
+
+/// The fault of a table; "" where there is none.
+std::string fault_of(recipe::Pairs rows) {
+  FrictionTable::Options o{std::move(rows)};
+  std::vector<Fault> faults;
+  o.describe(*recipe::make_checker(faults), {.name = "[solve.base]", .chosen = "table"});
+  return faults.empty() ? "" : faults.front().what;
+}
+
+TEST(FrictionTable, is_refused_unless_its_rows_make_a_function) {
+  EXPECT_EQ(fault_of({{0, 0.3}, {1, 0.2}}), "");
+  EXPECT_EQ(fault_of({{0, 0.3}, {0, 0.2}}), "[solve.base] table: speeds do not increase");
+  EXPECT_EQ(fault_of({}), "[solve.base] table has 0 rows");
+  EXPECT_EQ(fault_of(as_many(25)), "[solve.base] table has 25 rows");
+}
 
 constexpr double density = 2000;  // of some_bed()
 double tangent(double angle) { return std::tan(angle * std::numbers::pi / 180); }
@@ -118,37 +171,31 @@ TEST(Pouliquen, falls_from_rest_to_the_slowest_flow_and_grows_from_there) {
   }
 }
 
-/// What is wrong with a recipe's bed.
-std::vector<Fault> faults_of(const std::function<void(solver::BaseOptions&)>& change) {
+/// How many faults the recipe of a bed of this law has.
+template <class Change>
+std::size_t faults_of(FrictionLaw law, const Change& change) {
   solver::SolveOptions o;
+  o.base.law = law;
   change(o.base);
   std::vector<Fault> faults;
   recipe::find_unmet(o, faults);
-  return faults;
+  return faults.size();
 }
 
 TEST(Pouliquen, refuses_numbers_that_contradict_one_another) {
   using solver::BaseOptions;
-  const auto chosen = [](auto change) {
-    return faults_of([&](BaseOptions& o) {
-      o.law = FrictionLaw::pouliquen;
-      change(o);
-    });
-  };
-  EXPECT_TRUE(chosen([](BaseOptions&) {}).empty());
-  EXPECT_EQ(chosen([](BaseOptions& o) { o.steepest_angle = 20; }).size(), 1u);
-  EXPECT_EQ(chosen([](BaseOptions& o) { o.start_angle = 20; }).size(), 1u);
-  EXPECT_TRUE(faults_of([](BaseOptions& o) { o.steepest_angle = 20; }).empty()) << "another law is chosen";
+  EXPECT_EQ(faults_of(FrictionLaw::pouliquen, [](BaseOptions&) {}), 0u);
+  EXPECT_EQ(faults_of(FrictionLaw::pouliquen, [](BaseOptions& o) { o.steepest_angle = 20; }), 1u);
+  EXPECT_EQ(faults_of(FrictionLaw::pouliquen, [](BaseOptions& o) { o.start_angle = 20; }), 1u);
+  EXPECT_EQ(faults_of(FrictionLaw::coulomb, [](BaseOptions& o) { o.steepest_angle = 20; }), 0u) << "of another law";
 }
 
 TEST(Voellmy, refuses_a_cohesion_that_would_push) {
   const auto faults = [](double angle, FrictionLaw law) {
-    return faults_of([&](solver::BaseOptions& o) {
-             o.law = law;
-             o.friction_angle = angle;
-             o.bartelt_cohesion = 100;
-           })
-        .size();
+    return faults_of(law, [&](solver::BaseOptions& o) {
+      o.friction_angle = angle;
+      o.bartelt_cohesion = 100;
+    });
   };
   EXPECT_EQ(faults(50, FrictionLaw::voellmy), 1u);
   EXPECT_EQ(faults(40, FrictionLaw::voellmy), 0u);

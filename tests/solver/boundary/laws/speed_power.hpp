@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A law that is no part of the solver: friction that grows with a power of the slip speed, mu(v) = mu_0 (v / v_0)^n, to
-// show what a basal law takes.
+// A law that is no part of the solver, to show what a basal law takes: mu(v) = mu_0 (v / v_0)^n of the slip speed v.
 #pragma once
 
 #include "solver/boundary/laws/basal_law.hpp"

@@ -4,10 +4,8 @@
 // refuses.
 #include "solver/linear/direct/cholesky_solver.hpp"
 
-#include "solver/linear/direct/cholesky.hpp"
 #include "solver/linear/direct/csr_assembly.hpp"
 #include "solver/linear/direct/csr_matrix.hpp"
-#include "solver/linear/direct/stored_elements.hpp"
 #include "tests/solver/linear_bench.hpp"
 
 namespace talus::solver::testing {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbering, sparse matrices and orders of elimination on numbers small enough to check by hand; cuSOLVER's loading.
-#include "solver/linear/direct/csr_kernels.hpp"
+#include "solver/linear/direct/csr_assembly.hpp"
 
 #include <gtest/gtest.h>
 
+#include "solver/linear/direct/csr_matrix.hpp"
 #include "solver/linear/direct/cusolver.hpp"
-#include "solver/linear/direct/elimination_order.hpp"
-#include "solver/linear/direct/renumbered_matrix.hpp"
 
 namespace talus::solver::testing {
 namespace {
@@ -73,6 +72,8 @@ TEST(CsrKernels, place_the_rows_of_a_block_one_after_the_other) {
             (std::vector<int>{0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4, 5, 3, 4, 5, 3, 4, 5, 3, 4, 5}));
 }
 
+double value(int row, int column) { return 100.0 * std::min(row, column) + std::max(row, column); }
+
 /// The matrix of a chain of nodes 0 - 1 - 2, three rows each.
 CsrMatrix<CpuDevice> chain(double scale) {
   CsrMatrix<CpuDevice> a(CpuDevice::make());
@@ -82,7 +83,7 @@ CsrMatrix<CpuDevice> chain(double scale) {
     for (int column = 0; column < 9; ++column) {
       if (std::abs(row / 3 - column / 3) > 1) continue;
       columns.push_back(column);
-      values.push_back(scale * (100.0 * std::min(row, column) + std::max(row, column)));
+      values.push_back(scale * value(row, column));
     }
     starts.push_back(static_cast<int>(columns.size()));
   }
@@ -95,9 +96,8 @@ CsrMatrix<CpuDevice> chain(double scale) {
 
 std::vector<double> product(const int* starts, const int* columns, const double* values, const double* x) {
   std::vector<double> y(9);
-  for (std::size_t row = 0; row < 9; ++row) {
+  for (std::size_t row = 0; row < 9; ++row)
     for (int k = starts[row]; k < starts[row + 1]; ++k) y[row] += values[k] * x[columns[k]];
-  }
   return y;
 }
 
@@ -120,21 +120,9 @@ TEST(RenumberedMatrix, is_the_same_operator_between_vectors_brought_there_and_ba
 }
 
 TEST(EliminationOrder, renumbers_rows_and_columns_alike) {
-  // Nodes 0 - 1 - 2 in a chain, three rows each.
-  const std::vector<std::vector<int>> neighbours{{0, 1}, {0, 1, 2}, {1, 2}};
-  HostPattern a;
-  a.starts.push_back(0);
-  std::vector<double> values;
-  const auto value = [](int row, int column) { return 100.0 * std::min(row, column) + std::max(row, column); };
-  for (int row = 0; row < 9; ++row) {
-    for (const int n : neighbours[static_cast<std::size_t>(row / 3)]) {
-      for (int j = 0; j < 3; ++j) {
-        a.columns.push_back(3 * n + j);
-        values.push_back(value(row, 3 * n + j));
-      }
-    }
-    a.starts.push_back(static_cast<int>(a.columns.size()));
-  }
+  const CsrMatrix<CpuDevice> matrix = chain(1);
+  const HostPattern a{matrix.starts.download(), matrix.columns.download()};
+  const std::vector<double> values = matrix.values.download();
   const HostPattern graph = graph_of_nodes(a);
   EXPECT_EQ(graph.starts, (std::vector<int>{0, 2, 5, 7}));
   EXPECT_EQ(graph.columns, (std::vector<int>{0, 1, 0, 1, 2, 1, 2}));

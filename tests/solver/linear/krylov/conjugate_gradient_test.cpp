@@ -7,9 +7,6 @@
 
 #include <random>
 
-#include "solver/linear/krylov/cg_kernels.hpp"
-#include "solver/linear/krylov/linear_report.hpp"
-
 namespace talus::testing {
 namespace {
 
@@ -31,9 +28,8 @@ class DenseMatrix {
   void add_product(const Vector& x, Vector& y, const int*) const {
     const auto* from = reinterpret_cast<const double*>(x.data());
     auto* to = reinterpret_cast<double*>(y.data());
-    for (std::size_t i = 0; i < size_; ++i) {
+    for (std::size_t i = 0; i < size_; ++i)
       for (std::size_t j = 0; j < size_; ++j) to[i] += entries_[i * size_ + j] * from[j];
-    }
   }
   NothingToClose closing(const Vector&, Vector&) const { return {}; }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The blocks of nodes: whether they can be inverted, and what takes their place.
-#include "solver/linear/preconditioner/node_blocks.hpp"
+#include "solver/linear/preconditioner/preconditioner.hpp"
 
 #include <gtest/gtest.h>
 

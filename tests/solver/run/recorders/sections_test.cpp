@@ -1,38 +1,22 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sections: what crosses a line, against what lies on either side of it and against closed forms.
-#include "solver/run/recorders/sections.hpp"
-
+// Sections: what crosses a line; gauges: what they read of a block that slides past.
 #include <random>
 
-#include "solver/run/recorders/crossing.hpp"
+#include "solver/options/output.hpp"
+#include "solver/run/recorders/gauges.hpp"
+#include "solver/run/recorders/sections.hpp"
 #include "tests/common/findings.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/run/recorders/recorded.hpp"
 
 namespace talus::solver::testing {
 namespace {
 
-constexpr double incline_angle = 30 * std::numbers::pi / 180, block_volume = 8 * 8 * 2;
-
-SolveOptions block_without_friction() {
-  SolveOptions o;
-  o.integrator = Integrator::explicit_;
-  o.material.model = MaterialModel::hencky;
-  o.material.youngs_modulus = 2e7;
-  o.base.law = FrictionLaw::none;
-  return o;
-}
-
-/// A block of 8 x 8 x 2 m that slides down towards the east, from 10 to 18 m.
-Domain block_on_a_slope() {
-  Domain d = ground(64, 24, 1.0, 1.0, [](double x, double) { return 100 - std::tan(incline_angle) * x; });
-  fill(d, {10, 18, 8, 16, 0, 2});
-  return d;
-}
-
 const std::vector<double>& column(const RunHistory& history, const char* name) { return history.at(name).values; }
 
 class Sections : public InEachPlace {};
+TALUS_IN_EACH_PLACE(Sections);
 
 /// The volume to the right of the bent line below, and that within `width` of it.
 struct Sides {
@@ -55,14 +39,14 @@ Sides sides_of(const Solver& solver, const Scene& scene, double width) {
 /// The bent line is met obliquely, piece by piece, and part of the block lies beyond it at the start. What passed is
 /// the change of the volume beyond, to what lies within half a cell of the line; to rounding where nothing does.
 TEST_P(Sections, pass_what_the_volumes_on_either_side_say) {
-  SolveOptions o = block_without_friction();
+  SolveOptions o = block_without_friction(2e7);
   o.sections = {{.name = "bent", .line = {{22, 0.5}, {26.3, 11.7}, {15.2, 23.5}}},
                 {.name = "back", .line = {{15.2, 23.5}, {26.3, 11.7}, {22, 0.5}}},
                 {.name = "straight", .line = {{24, 0.5}, {24, 23.5}}}};
   Sides started;
   double integral = 0, between = 0;
   const RunHistory h = recorded(
-      block_on_a_slope(), o, GetParam(), 4, 0.25, [&](const Solver& solver, const Scene& scene, const History& now) {
+      block_on_a_slope(64), o, GetParam(), 4, 0.25, [&](const Solver& solver, const Scene& scene, const History& now) {
         const Sides sides = sides_of(solver, scene, 0.75);
         const double passed = now.last("section_bent_passed_m3");
         if (now.last("time_s") == 0) started = sides;
@@ -88,9 +72,8 @@ TEST_P(Sections, pass_what_the_volumes_on_either_side_say) {
 /// settles by 4 mm of 2 m under its own weight.
 TEST_P(Sections, know_the_discharge_of_a_steady_uniform_flow) {
   constexpr double speed = 6, depth = 2, width = 4;
-  Domain d = ground(72, 24, 1.0, 1.0, [](double, double) { return 0.0; });
-  fill(d, {4, 34, 8, 12, 0, depth});
-  SolveOptions o = block_without_friction();
+  Domain d = filled(ground(72, 24, 1.0, 1.0, flat), {4, 34, 8, 12, 0, depth});
+  SolveOptions o = block_without_friction(2e7);
   o.initial_velocity = {speed, 0, 0};
   o.sections = {{.name = "across", .line = {{39.25, 20}, {39.25, 4}}}};
   const RunHistory h = recorded(d, o, GetParam(), 4, 0.25);
@@ -105,10 +88,10 @@ TEST_P(Sections, know_the_discharge_of_a_steady_uniform_flow) {
 }
 
 TEST_P(Sections, go_on_after_a_restart_as_without) {
-  SolveOptions o = block_without_friction();
+  SolveOptions o = block_without_friction(2e7);
   o.deterministic = true;  // two runs on a GPU are the same then
   o.sections = {{.name = "line", .line = {{22, 0.5}, {22, 23.5}}}};
-  const Domain d = block_on_a_slope();
+  const Domain d = block_on_a_slope(64);
   const Scene scene = make_scene(d, o);
   const RunHistory whole = recorded(d, o, GetParam(), 2.5, 0.25);
   RunMemory memory;
@@ -118,13 +101,7 @@ TEST_P(Sections, go_on_after_a_restart_as_without) {
   const auto solver = make_solver(scene, o, GetParam());
   for (int row = 1; row <= 10; ++row) {
     run_to(*solver, row * 0.25);
-    if (row < 6) continue;
-    later.record({.time = row * 0.25,
-                  .clock = solver->clock(),
-                  .energies = solver->energies(),
-                  .step_over_cfl = 0,
-                  .counted = memory,
-                  .solver = *solver});
+    if (row >= 6) record(later, row * 0.25, *solver, memory);
   }
   for (const char* name : {"section_line_passed_m3", "section_line_discharge_m3_s", "section_line_momentum_flux_N"})
     EXPECT_EQ(column(later.rows(), name), column(whole, name)) << name;
@@ -134,11 +111,11 @@ TEST_P(Sections, go_on_after_a_restart_as_without) {
 }
 
 TEST_P(Sections, say_what_may_have_left_unseen) {
-  SolveOptions o = block_without_friction();
+  SolveOptions o = block_without_friction(2e7);
   o.sections = {{.name = "edge", .line = {{62, 0.5}, {62, 23.5}}}, {.name = "far", .line = {{30, 0.5}, {30, 23.5}}}};
   std::vector<std::string> warnings;
   const RunHistory h = recorded(
-      block_on_a_slope(), o, GetParam(), 6, 1,
+      block_on_a_slope(64), o, GetParam(), 6, 1,
       [&](const Solver&, const Scene&, const History& now) { warnings = test::messages_of([&] { now.conclude(); }); });
   const double passed = column(h, "section_edge_passed_m3").back(), unseen = column(h, "section_edge_unseen_m3").back();
   EXPECT_GT(unseen, 0);
@@ -149,20 +126,14 @@ TEST_P(Sections, say_what_may_have_left_unseen) {
   EXPECT_TRUE(said);
 }
 
-TALUS_IN_EACH_PLACE(Sections);
-
 TEST(SectionChecks, refuse_what_lies_beyond_the_domain) {
   SolveOptions o;
-  const Domain d = block_on_a_slope();
+  const Domain d = block_on_a_slope(64);
   o.sections = {{.name = "in", .line = {{0.5, 0.5}, {63.5, 23.5}}}, {.name = "out", .line = {{2, 2}, {64, 3}}}};
-  try {
-    const SectionRecorder recorder(o, make_scene(d, o));
-    FAIL();
-  } catch (const RecipeError& error) {
-    ASSERT_EQ(error.faults().size(), 1U);
-    EXPECT_EQ(error.faults()[0].what, "[[solve.section]] name = \"out\": (64, 3) lies outside the domain");
-    EXPECT_EQ(error.faults()[0].mend, "Choose x from 0.5 to 63.5 and y from 0.5 to 23.5");
-  }
+  const auto faults = faults_of<RecipeError>([&] { SectionRecorder(o, make_scene(d, o)); });
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].what, "[[solve.section]] name = \"out\": (64, 3) lies outside the domain");
+  EXPECT_EQ(faults[0].mend, "Choose x from 0.5 to 63.5 and y from 0.5 to 23.5");
 }
 
 TEST(SectionChecks, refuse_lines_that_are_none) {
@@ -226,6 +197,89 @@ TEST(Crossing, distance_is_to_the_piece_and_not_to_its_line) {
   EXPECT_DOUBLE_EQ(distance({0, 0}, {10, 0}, {5, 3}), 3);
   EXPECT_DOUBLE_EQ(distance({0, 0}, {10, 0}, {13, 4}), 5);
   EXPECT_DOUBLE_EQ(distance({0, 0}, {10, 0}, {-3, 4}), 5);
+}
+
+constexpr double gravity = 9.81;
+constexpr double block_from = 10, block_to = 18, block_height = 2;  // along x; height above the bed, vertical [m]
+
+double bed(double x) { return 100 - std::tan(block_slope) * x; }
+
+/// Way in plan and speed along the slope of a block without friction (docs/explanation/validation.md, B1).
+double way(double time) { return 0.5 * gravity * std::sin(block_slope) * std::cos(block_slope) * time * time; }
+double speed(double time) { return gravity * std::sin(block_slope) * time; }
+
+class Gauges : public InEachPlace {};
+TALUS_IN_EACH_PLACE(Gauges);
+
+TEST_P(Gauges, read_thickness_speed_and_surface_of_a_block_that_slides_past) {
+  constexpr double at = 24.3, end = 3.2;  // the block's front comes after 1.7 s, its end goes after 2.6 s
+  for (const Integrator integrator : {Integrator::explicit_, Integrator::newmark}) {
+    SolveOptions o = block_without_friction(1e8, integrator);
+    o.implicit.step = 0.02;
+    o.gauges = {{.name = "mid-slope", .x = at, .y = 11.8}, {.name = "aside", .x = at, .y = 3}};
+    const RunHistory history = recorded(block_on_a_slope(48), o, GetParam(), end, 0.1);
+    const auto column = [&](const char* name) { return history.at(name).values; };
+    const auto time = column("time_s"), thickness = column("gauge_mid-slope_thickness_m"),
+               fast = column("gauge_mid-slope_speed_m_s"), surface = column("gauge_mid-slope_surface_m");
+    int before = 0, under = 0, after = 0;
+    for (std::size_t row = 0; row < time.size(); ++row) {
+      const double front = block_to + way(time[row]), back = block_from + way(time[row]);
+      SCOPED_TRACE(time[row]);
+      EXPECT_NEAR(surface[row], bed(at) + thickness[row], 1e-9) << "the bed is a plane, which the grid holds exactly";
+      if (front < at - 2.5 || back > at + 2.5) {  // a hat, a spline and a share of a cell away
+        EXPECT_EQ(thickness[row], 0);
+        EXPECT_EQ(fast[row], 0);
+        ++(front < at ? before : after);
+      } else if (front > at + 2.5 && back < at - 2.5) {
+        EXPECT_NEAR(thickness[row], block_height, 0.01 * block_height);
+        EXPECT_NEAR(fast[row], speed(time[row]), 0.01 * speed(time[row]));
+        ++under;
+      }
+    }
+    EXPECT_GE(before, 5);
+    EXPECT_GE(under, 2);
+    EXPECT_GE(after, 3);
+    for (const double value : column("gauge_aside_thickness_m")) EXPECT_EQ(value, 0);
+    EXPECT_NEAR(column("gauge_aside_surface_m").back(), bed(at), 1e-9);
+  }
+}
+
+TEST_P(Gauges, read_at_the_centre_of_a_cell_what_the_map_shows_there) {
+  SolveOptions o = block_without_friction(1e8, Integrator::explicit_);
+  o.implicit.step = 0.02;
+  o.initial_velocity = {3, 0, 4};
+  o.gauges = {{.name = "rim", .x = block_from + 0.5, .y = 12.5}, {.name = "between", .x = block_from + 1, .y = 12.5}};
+  const SceneRun run(block_on_a_slope(48), o, GetParam());
+  const std::vector<double> map = run.solver->thickness();
+  const auto cell = run.scene.map.index(static_cast<int>(block_from), 12);
+  const RunHistory history = recorded(block_on_a_slope(48), o, GetParam(), 0, 1);
+  EXPECT_DOUBLE_EQ(history.at("gauge_rim_thickness_m").values[0], map[cell]);
+  EXPECT_NEAR(history.at("gauge_between_thickness_m").values[0], 0.5 * (map[cell] + map[cell + 1]), 1e-12);
+  EXPECT_NEAR(history.at("gauge_rim_speed_m_s").values[0], 5, 1e-12);
+  const HistoryColumn& column = history.at("gauge_rim_speed_m_s");
+  EXPECT_EQ(column.unit, "m s-1");
+  EXPECT_EQ(column.quantity, "mean speed over depth");
+  EXPECT_EQ(column.place, "gauge rim");
+}
+
+/// The faults of a recipe with these gauges.
+std::vector<Fault> faults_with(const std::vector<GaugeOptions>& gauges, const Domain& d) {
+  SolveOptions o;
+  o.gauges = gauges;
+  return faults_of<RecipeError>([&] { GaugeRecorder(o, make_scene(d, o)); });
+}
+
+TEST(GaugeChecks, refuse_every_place_without_terrain_around_it) {
+  Domain d = block_on_a_slope(48);
+  EXPECT_TRUE(faults_with({{.name = "a", .x = 0.5, .y = 0.5}, {.name = "b", .x = 47.5, .y = 23.5}}, d).empty());
+  const auto faults = faults_with(
+      {{.name = "low", .x = 20, .y = 0.4}, {.name = "here", .x = 20, .y = 12}, {.name = "far", .x = 47.6, .y = 12}}, d);
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_EQ(faults[0].what, "[[solve.gauge]] name = \"low\": (20, 0.4) lies outside the domain");
+  EXPECT_EQ(faults[1].what, "[[solve.gauge]] name = \"far\": (47.6, 12) lies outside the domain");
+  EXPECT_EQ(faults[1].mend, "Choose x from 0.5 to 47.5 and y from 0.5 to 23.5, where the elevation model has data");
+  d.terrain.at(40, 3) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(faults_with({{.name = "hole", .x = 40, .y = 3}}, d).size(), 1U);
 }
 
 }  // namespace
