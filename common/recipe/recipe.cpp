@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/recipe/gone_keys.hpp"
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/recipe/suggest.hpp"

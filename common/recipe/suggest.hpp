@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// "Did you mean": the nearest of some known words; advice on keys, tables and choices of earlier versions.
+// "Did you mean": the nearest of some known words.
 #pragma once
 
 #include <string>
@@ -17,10 +17,5 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
 
 /// 'Did you mean "x"?' or, when nothing is near, 'Known here: a, b, c'.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
-
-/// The advice on a key or table that is gone, by its path ("solve.flip_fraction", "budget"), or on a word of a choice
-/// that is gone ("solve.implicit.linear_solver=bicgstab"). Empty: no earlier version had it. The reader looks up only
-/// the keys and words that no option declares.
-std::string_view advice_on_gone(std::string_view place);
 
 }  // namespace talus::recipe

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "common/recipe/gone_keys.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/recipe/suggest.hpp"
 

@@ -170,17 +170,6 @@ Raster cone() {
   return around_middle(grid_of(40, 10), [](double r) { return 120 - r; });
 }
 
-OGRPolygon shape_of(const MapPolygon& polygon) {
-  OGRPolygon shape;
-  for (const auto& ring : polygon.rings) {
-    OGRLinearRing line;
-    for (const auto& [x, y] : ring) line.addPoint(x, y);
-    line.closeRings();
-    shape.addRing(&line);
-  }
-  return shape;
-}
-
 TEST(OutlineAbove, lies_where_the_value_is_the_threshold_and_has_the_area_of_a_disc) {
   // Chords of at most a cell across a circle of ten
   // cells lie inside it by cell^2 / (8 r) at most: 1.25 m of 100 m, 2.5 % of the area; the other side is open by as
@@ -189,7 +178,7 @@ TEST(OutlineAbove, lies_where_the_value_is_the_threshold_and_has_the_area_of_a_d
   ASSERT_EQ(polygons.size(), 1U);
   EXPECT_EQ(polygons[0].rings.size(), 1U);
   const double disc = std::numbers::pi * 100 * 100;
-  EXPECT_NEAR(shape_of(polygons[0]).get_Area(), disc, 0.025 * disc);
+  EXPECT_NEAR(gdal::ogr_polygon(polygons[0]).get_Area(), disc, 0.025 * disc);
   for (const auto& [x, y] : polygons.at(0).rings.at(0))
     EXPECT_NEAR(std::hypot(x - 500200, y - 5400200), 100, 0.3) << "the cone is bent by cell^2 / (8 r) within a cell";
 }
@@ -201,7 +190,7 @@ TEST(OutlineAbove, keeps_holes_and_islands_in_them) {
   std::size_t holes = 0;
   for (const auto& polygon : polygons) {
     holes += polygon.rings.size() - 1;
-    const auto shape = shape_of(polygon);
+    const auto shape = gdal::ogr_polygon(polygon);
     EXPECT_TRUE(shape.IsValid());
     EXPECT_FALSE(shape.getExteriorRing()->isClockwise());
     for (int i = 0; i < shape.getNumInteriorRings(); ++i) EXPECT_TRUE(shape.getInteriorRing(i)->isClockwise());
@@ -216,7 +205,7 @@ TEST(OutlineAbove, counts_nodata_and_the_world_outside_as_nothing) {
   ASSERT_EQ(polygons.size(), 1U);
   EXPECT_EQ(polygons[0].rings.size(), 2U) << "a hole where nothing is known";
   OGREnvelope box;
-  shape_of(polygons[0]).getEnvelope(&box);
+  gdal::ogr_polygon(polygons[0]).getEnvelope(&box);
   EXPECT_DOUBLE_EQ(box.MinX, 500000) << "half way to the first 0, which is a cell away: the raster's own edge";
   EXPECT_TRUE(outline_above(full, 3).empty());
   EXPECT_THROW(outline_above(full, -1), std::invalid_argument);
@@ -231,7 +220,7 @@ TEST(OutlineAbove, gives_valid_disjoint_polygons_of_noise) {
     const auto polygons = outline_above(noise, 2);
     OGRMultiPolygon all;
     for (const auto& polygon : polygons) {
-      const auto shape = shape_of(polygon);
+      const auto shape = gdal::ogr_polygon(polygon);
       all.addGeometry(&shape);
     }
     EXPECT_GT(polygons.size(), 10U);
@@ -259,7 +248,7 @@ TEST_F(OutlineFile, reads_back_with_holes_crs_and_attributes_and_in_another_crs)
   EXPECT_EQ(polygons[0].name, "above 20");
   EXPECT_EQ(polygons[0].rings.size(), 2U) << "the hole";
   EXPECT_NEAR(polygons[0].rings[0][0][0], 500200, 110);
-  const auto shape = shape_of(polygons[0]);
+  const auto shape = gdal::ogr_polygon(polygons[0]);
   ASSERT_EQ(polygons[0].numbers.size(), 2U);
   EXPECT_EQ(polygons[0].numbers[0].first, "area_m2");
   EXPECT_NEAR(polygons[0].numbers[0].second, shape.get_Area(), 1e-6) << "summed in another order";

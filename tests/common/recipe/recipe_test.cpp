@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdlib>
 
+#include "common/recipe/gone_keys.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/recipe/suggest.hpp"
 #include "tests/common/sample_options.hpp"

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The points of a domain in a scene, and solvers of it that fall freely.
+#include "solver/scene/make_scene.hpp"
+#include "solver/column_implicit/column_implicit_solver.hpp"
+#include "solver/integrator/make_solvers.hpp"
+#include "solver/scene/settings.hpp"
+#include "tests/common/scratch.hpp"
+#include "tests/solver/scenes.hpp"
+
+namespace talus::solver::testing {
+namespace {
+
+using test::fault_of;
+
+/// Four points in the cells about (5, 5), two layers high, on a slope.
+Domain sample() {
+  Domain domain = testing::ground(30, 20, 10, 5, [](double x, double) { return 0.3 * x; });
+  testing::fill(domain, {50, 60, 50, 60, 0, 10}, 1, 1);
+  domain.active = active_cells(domain.grid, domain.layer_height, domain.points);
+  return domain;
+}
+
+TEST(MakeScene, the_mask_of_the_file_is_the_grid_at_the_start) {
+  const Domain domain = sample();
+  EXPECT_EQ(make_scene(domain, {}).active, *domain.active);
+  Domain made_in_memory = domain;
+  made_in_memory.active.reset();
+  EXPECT_EQ(make_scene(made_in_memory, {}).active, *domain.active);
+}
+
+TEST(MakeScene, every_node_next_to_a_point_is_active) {
+  const Scene scene = make_scene(sample(), {});
+  for (std::size_t p = 0; p < scene.points.size(); ++p) {
+    for (int beside = 0; beside < 27; ++beside) {
+      const int layer = scene.points.cell[2][p] + beside / 9 - 1;
+      EXPECT_EQ(scene.active.holds(
+                    {scene.points.cell[0][p] + beside % 3 - 1, scene.points.cell[1][p] + beside / 3 % 3 - 1, layer}),
+                layer >= 0);
+    }
+  }
+}
+
+TEST(MakeScene, points_outside_the_active_cells_are_refused) {
+  Domain domain = sample();
+  domain.points.height[1] = 40;
+  EXPECT_EQ(
+      fault_of<DataError>([&] { make_scene(domain, {}); }),
+      "domain.vdb: point 1 at (55.00, 55.00), 40.00 m above the bed, lies in column 5, row 5, layer 8, which is no "
+      "active cell of the background grid (points and mask \"active\" are not of one domain). Run "
+      "talus-preprocess again");
+  domain = sample();
+  domain.points.x[0] = 215;
+  EXPECT_TRUE(
+      test::holds(fault_of<DataError>([&] { make_scene(domain, {}); }), {"lies in column 21, row 5, layer 1,"}));
+}
+
+TEST(MakeScene, points_at_the_edge_of_the_ground_are_refused) {
+  Domain domain = sample();
+  domain.points.x[0] = 2;
+  EXPECT_EQ(fault_of<DataError>([&] { make_scene(domain, {}); }),
+            "domain.vdb: point 0 at (2.00, 55.00) stands outside the ground or at its edge (a point needs known ground "
+            "one cell around it). Give a larger elevation model, or a smaller source, and run talus-preprocess again");
+}
+
+/// `rounding` is the relative error that speed and place may have.
+template <class Real, class Shape>
+void expect_free_fall(SolveOptions o, On on, double rounding) {
+  o.shape = kind_of<Shape>;
+  const Scene scene = make_scene(filled(ground(12, 12, 1.0, 1.0, flat), {4, 8, 4, 8, 5, 8}), o);
+  const SolverSettings settings = make_settings(o, scene.grid);
+  const SolverState start = first_state(scene, settings.common);
+  const AnyDevice device = make_device(on);
+  const auto solver =
+      o.integrator == Integrator::explicit_ ? ExplicitSolvers<Real, Shape>::make(scene, settings.common, device, start)
+      : o.integrator == Integrator::column_implicit
+          ? ColumnImplicitSolvers<Real, Shape>::make(scene, settings.common, device, start)
+          : ImplicitSolvers<Real, Shape>::make(scene, settings.common, settings.implicit, device, start);
+  EXPECT_EQ(solver->particle_count(), static_cast<int>(scene.points.size()));
+  run_to(*solver, 0.2);
+  const Centre c = centre(*solver, scene);
+  EXPECT_NEAR(c.speed, 9.81 * 0.2, rounding * 9.81 * 0.2);
+  EXPECT_NEAR(c.x, 6, 6 * rounding);
+}
+
+class FreeFall : public InEachPlace {};
+TALUS_IN_EACH_PLACE(FreeFall);
+
+// Every step rounds velocities once in the precision of the points; there are some hundred of them.
+TEST_P(FreeFall, is_that_of_explicit_steps) {
+  SolveOptions o = stepping_by(Integrator::explicit_);
+  expect_free_fall<double, Linear>(o, GetParam(), 1e-12);
+  expect_free_fall<double, Quadratic>(o, GetParam(), 1e-12);
+  expect_free_fall<float, Gimp>(o, GetParam(), 1e-4);
+}
+
+TEST_P(FreeFall, is_that_of_column_implicit_steps) {
+  SolveOptions o = stepping_by(Integrator::column_implicit);
+  expect_free_fall<double, Quadratic>(o, GetParam(), 1e-12);
+  expect_free_fall<float, Gimp>(o, GetParam(), 1e-4);
+  o.stress_update = StressUpdate::modified;
+  expect_free_fall<double, Linear>(o, GetParam(), 1e-12);
+}
+
+// Newton leaves a millionth of the forces unbalanced (newton_tolerance), and single precision rounds at 1e-7.
+TEST_P(FreeFall, is_that_of_implicit_steps) {
+  SolveOptions o = stepping_by(Integrator::newmark);
+  o.implicit.step = 0.05;
+  o.implicit.newton_tolerance = 1e-6;
+  expect_free_fall<double, Linear>(o, GetParam(), 1e-6);
+  expect_free_fall<double, Quadratic>(o, GetParam(), 1e-6);
+  expect_free_fall<float, Gimp>(o, GetParam(), 1e-5);
+}
+
+TEST(PlaceInCells, is_the_nearest_node_and_what_is_left) {
+  int cell = 0;
+  double offset = 0;
+  place_in_cells(4.75, cell, offset);
+  EXPECT_EQ(cell, 5);
+  EXPECT_EQ(offset, -0.25);
+  place_in_cells(4.5, cell, offset);
+  EXPECT_EQ(cell, 5);
+  EXPECT_EQ(offset, -0.5);
+}
+
+}  // namespace
+}  // namespace talus::solver::testing
