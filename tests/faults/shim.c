@@ -9,7 +9,8 @@
  *   FAULT_AT     the number of the call, from 1; 0: none
  *   FAULT_DO     kill, a signal's number as "signal:15", an errno as "errno:28", or "short": a write of half the bytes
  *   FAULT_ON     "": that call alone; "on": that one and all that follow (a disk that stays full)
- *   FAULT_COUNT  a file of 16 bytes that holds the calls and the allocations counted so far, also after a kill
+ *   FAULT_COUNT  a file of 80 bytes that holds what was counted so far, also after a kill: the calls, the allocations,
+ *                and the calls of each kind in the order of FAULT_OPS
  *   FAULT_LOG    a file that gets a line for every call: "write PATH BYTES", "rename PATH PATH", "fsync PATH", ...
  *   FAULT_ALLOC  the number of the allocation that fails, counted from the first in the program's own code; 0: none
  */
@@ -46,8 +47,8 @@ static int counts_op[op_count];
 static long fault_at, fault_errno, fault_signal;
 static int fault_kill, fault_short, fault_on;
 static int log_file = -1;
-static _Atomic int64_t own_counters[2];
-static _Atomic int64_t* counters = own_counters; /* calls, allocations */
+static _Atomic int64_t own_counters[1 + op_count];
+static _Atomic int64_t* counters = own_counters; /* calls, allocations, calls of each kind */
 static long alloc_at;
 
 static long raw(long number, long a, long b, long c, long d, long e) {
@@ -179,6 +180,7 @@ static long answer(long number, const long* a) {
   if (op == op_none || !counts_op[op] || !subject(number, a, path, sizeof path / 2, &second))
     return raw(number, a[0], a[1], a[2], a[3], a[4]);
   const int64_t now = atomic_fetch_add(&counters[0], 1) + 1;
+  atomic_fetch_add(&counters[1 + op], 1);
   const int hit = fault_at > 0 && (now == fault_at || (fault_on && now > fault_at));
   if (hit && fault_kill) raw(SYS_kill, raw(SYS_getpid, 0, 0, 0, 0, 0), SIGKILL, 0, 0, 0);
   if (hit && fault_signal > 0) raw(SYS_kill, raw(SYS_getpid, 0, 0, 0, 0, 0), fault_signal, 0, 0, 0);
@@ -238,7 +240,7 @@ static void open_files(void) {
   const char* count = getenv("FAULT_COUNT");
   if (count != NULL) {
     const int file = open(count, O_RDWR | O_CLOEXEC);
-    void* shared = file < 0 ? MAP_FAILED : mmap(NULL, 16, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    void* shared = file < 0 ? MAP_FAILED : mmap(NULL, sizeof own_counters, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (shared != MAP_FAILED) counters = shared;
   }
   const char* log = getenv("FAULT_LOG");
