@@ -10,6 +10,7 @@ unset MAKEFLAGS MAKELEVEL MFLAGS   # 'make test' is no part of what a test's own
 
 : "${TALUS_SOURCE:?run through ctest}" "${TALUS_BUILD:?run through ctest}" "${TALUS_SCRATCH:?run through ctest}"
 bin=$TALUS_BUILD/bin
+is_made=${TALUS_SCRATCH%.*}.is_made   # where test_is_made of the same script has left its files
 
 fail() {
   echo "FAILED: $*" >&2
@@ -88,6 +89,9 @@ expect_no_file() {
     fail "$file was left behind"
   done < <(find "$folder" -type f -print0)
 }
+
+# made: a copy of what test_is_made has left, in the current folder.
+made() { cp -a "$is_made/." .; }
 
 run_test() {
   local name=${1:?which test?}

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 # talus_shell_tests(FILE... [QUICK FILE...]): every function test_NAME() of a *_test.sh becomes a CTest test, those of
-# the quick files with that label. Exit code 77 is a skip.
+# the quick files with that label. Exit code 77 is a skip. Where a file has test_is_made(), its others come after that
+# one and look at what it has left (tests/lib.sh).
 find_program(TALUS_BASH bash REQUIRED)
 
 function(talus_shell_tests)
@@ -19,6 +20,11 @@ function(talus_shell_tests)
       set(_variables TALUS_SOURCE=${CMAKE_SOURCE_DIR} TALUS_BUILD=${CMAKE_BINARY_DIR}
         TALUS_SCRATCH=${CMAKE_BINARY_DIR}/scratch/${_name})
       set_tests_properties(${_name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 ENVIRONMENT "${_variables}")
+      if(_case STREQUAL is_made)
+        set_tests_properties(${_name} PROPERTIES FIXTURES_SETUP ${_group}.${_subject})
+      elseif(_functions MATCHES "test_is_made")
+        set_tests_properties(${_name} PROPERTIES FIXTURES_REQUIRED ${_group}.${_subject})
+      endif()
       if(_file IN_LIST _asked_QUICK)
         set_tests_properties(${_name} PROPERTIES LABELS quick)
       endif()

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Debian's Chromium without a window, as the tests of pages drive it."""
-import base64
 import os
 
 from selenium import webdriver
@@ -29,7 +28,7 @@ def open_browser(size=(1300, 1000), webgl=True):
 def open_page(browser, page):
     """A page of ours, once it has drawn itself; it shows no trouble."""
     browser.get(f"file://{page}")
-    WebDriverWait(browser, 60).until(
+    WebDriverWait(browser, 60, 0.1).until(
         lambda b: b.execute_script("return document.documentElement.dataset.ready === 'yes'")
         or b.find_element(By.ID, "trouble").is_displayed()
     )
@@ -89,14 +88,3 @@ def at_width(browser, width, height=900):
         "Emulation.setDeviceMetricsOverride",
         {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500},
     )
-
-
-def save_picture(browser, width, path):
-    """The whole page, however long, as a PNG."""
-    height = browser.execute_script("return document.documentElement.scrollHeight")
-    shot = browser.execute_cdp_cmd(
-        "Page.captureScreenshot",
-        {"captureBeyondViewport": True, "clip": {"x": 0, "y": 0, "width": width, "height": height, "scale": 1}},
-    )
-    with open(path, "wb") as file:
-        file.write(base64.b64decode(shot["data"]))

@@ -1,28 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What 'make demo' does, from the valley's two elevation models to its score.
+# What 'make demo' and 'make test' do before they run anything; demo_results_test.sh runs the demo.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
-out=$TALUS_BUILD/scratch/demo/synthetic-valley
-
-pipeline() {
-  make -C "$TALUS_SOURCE/pipelines" synthetic-valley OUT="$TALUS_BUILD/scratch/demo" BIN="$bin" ON="${1:-auto}"
-}
-
-# Its results stay for the tests of demo_results_test.sh.
-test_valley_runs_to_a_score() {
-  rm -rf "$TALUS_BUILD/scratch/demo"
-  expect_exit 0 pipeline
-  local file files=(domain.vdb preprocess.used.toml run.h5 solve.used.toml postprocess.used.toml score.json score.txt
-    map.png history.csv maps/deposit_thickness.tif maps/peak_thickness.tif maps/peak_speed.tif maps/peak_pressure.tif
-    maps/arrival_time.tif maps/results.nc maps/deposit_thickness.qml maps/terrain.tif maps/outlines.gpkg
-    maps/synthetic-valley.qgs)
-  for file in "${files[@]}"; do
-    [[ -s $out/$file ]] || fail "$file is missing"
-    grep -qF "$out/$file" stdout || fail "no program named $file on stdout"
-  done
-  [[ -z $(find "$out" -name '*.partial') ]] || fail "a file is still pending: $(find "$out" -name '*.partial')"
-}
 
 test_make_demo_runs_this_pipeline() {
   expect_exit 0 make -n -C "$TALUS_SOURCE" demo SETUP=no BUILD="$TALUS_BUILD"

@@ -3,7 +3,7 @@
 """Opens the page of an ensemble or of many slides in Chromium and uses it as a person would: ensemble_browser.py PAGE.
 
 Beside PAGE (ensemble.html or slides.html) lie members.csv, sensitivity.csv and probability/, or slides.csv. Any fault
-ends with an assertion that says what was seen. Pictures of the page at three widths are left beside it.
+ends with an assertion that says what was seen.
 """
 import csv
 import pathlib
@@ -15,7 +15,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
-from browser import at_width, check_console, open_browser, open_page, save_picture
+from browser import at_width, check_console, open_browser, open_page
 
 gdal.UseExceptions()
 
@@ -30,10 +30,14 @@ def painted(browser):
 
 
 def choose(browser, box, value):
-    button = browser.find_element(By.CSS_SELECTOR, f"#{box} input[value='{value}']")
-    browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", button)
-    button.find_element(By.XPATH, "..").click()
-    assert button.is_selected(), f"{value} does not stay chosen"
+    label = browser.execute_script(
+        "const label = document.querySelector(arguments[0]).parentElement;"
+        "label.scrollIntoView({block: 'center'}); return label;",
+        f"#{box} input[value='{value}']",
+    )
+    label.click()
+    checked = browser.execute_script("return arguments[0].querySelector('input').checked", label)
+    assert checked, f"{value} does not stay chosen"
 
 
 def check_layers(browser):
@@ -75,13 +79,12 @@ def check_slider(browser, out):
         shown = painted(browser)
         assert before is None or shown <= before, f"{shown} pixels at {label}, {before} at the one below"
         before = shown
-        for row in range(0, values.shape[0], 3):
-            for column in range(0, values.shape[1], 3):
-                x, y = west + (column + 0.5) * cell, north - (row + 0.5) * cell
-                seen = browser.execute_script(f"return ensemble.panel.share().field.at({x}, {y})")
-                if seen is None or seen != seen or values[row, column] < 0:
-                    continue  # outside the window that is shown
-                assert abs(seen - values[row, column]) < 1e-4, f"{seen} at {x}, {y} instead of {values[row, column]}"
+        cells = [(r, c) for r in range(0, values.shape[0], 3) for c in range(0, values.shape[1], 3)]
+        at = [(west + (c + 0.5) * cell, north - (r + 0.5) * cell) for r, c in cells]
+        look = "const field = ensemble.panel.share().field; return arguments[0].map(([x, y]) => field.at(x, y));"
+        for spot, value, seen in zip(at, (values[cell] for cell in cells), browser.execute_script(look, at)):
+            if seen is not None and value >= 0:  # within the window that is shown
+                assert abs(seen - value) < 1e-4, f"{seen} at {spot} instead of {value}"
     # A map that is painted anew stays below the outlines.
     level = "return Number(getComputedStyle(arguments[0].closest('.leaflet-pane')).zIndex)"
     painted_at, drawn_at = (
@@ -226,7 +229,6 @@ def check_widths(browser, page):
             "e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.tagName + '#' + e.id + '.' + e.className)"
         )
         assert not wider, f"at {width}: {wider[:5]} reach beyond the window"
-        save_picture(browser, width, page.with_name(f"{page.stem}-{width}.png"))
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 

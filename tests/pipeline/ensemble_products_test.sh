@@ -65,12 +65,17 @@ high = 40.0
 TOML
 }
 
-# made [...]: the three stages of the valley, run.
-made() {
+# run [...]: the three stages of the valley.
+run() {
   valley "$@"
   expect_exit 0 preprocess
   expect_exit 0 solve
   expect_exit 0 postprocess
+}
+
+test_is_made() {
+  run
+  expect_stdout_paths
 }
 
 test_page_opens_and_answers_in_a_browser() {
@@ -85,7 +90,6 @@ test_page_opens_and_answers_in_a_browser() {
 test_maps_are_read_by_gdal_with_threshold_and_members() {
   need_tool gdalinfo
   made
-  expect_stdout_paths
   expect_exit 0 gdalinfo -stats out/probability/peak_thickness_above_1_m.tif
   local words
   for words in 'LAYOUT=COG' 'THRESHOLD=1' 'THRESHOLD_UNIT=m' 'MEMBERS_COUNTED=24' 'MEMBERS_FAILED=0' \
@@ -103,7 +107,7 @@ test_maps_are_read_by_gdal_with_threshold_and_members() {
 # Opened in QGIS itself by make check-qgis.
 test_project_names_layers_that_gdal_opens() {
   /usr/bin/python3 -c 'import osgeo' 2>/dev/null || need_tool python3-gdal
-  made 8
+  made
   /usr/bin/python3 - "$PWD/out/probability" <<'PYTHON' || fail "the project names layers that are not there"
 import pathlib
 import sys
@@ -132,7 +136,7 @@ test_sensitivity_finds_the_friction_that_rules_run_out() {
 }
 
 test_sobol_indices_come_with_a_design_for_them() {
-  made 30 sensitivity
+  run 30 sensitivity
   local counted
   counted=$(grep -c ',counted,' out/members.csv)
   [[ $counted -eq 30 ]] || fail "$counted members are counted"
@@ -142,7 +146,7 @@ test_sobol_indices_come_with_a_design_for_them() {
 }
 
 test_counts_of_parts_give_the_same_files() {
-  made 8
+  run 8
   mkdir whole
   cp out/members.csv out/sensitivity.csv out/probability/*.tif whole/
   rm -r out/counts.h5 out/probability out/probability.nc

@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A page at the widths of a desktop, a small laptop, a tablet and a phone, and on paper: page_widths.py PAGE OUT
+"""Pages at the widths of a desktop, a small laptop, a tablet and a phone, and on paper: page_widths.py PAGE...
 
-Nothing may reach beyond the window, nor beyond what holds it. Pictures of all widths and the pages on paper are left in
-OUT, to be looked at. Any fault ends with an assertion that names the elements.
+Nothing may reach beyond the window, nor beyond what holds it. Beside each page its pages on paper are left as a PDF.
+Any fault ends with an assertion that names the elements.
 """
 import base64
 import pathlib
 import sys
 import time
 
-from browser import at_width, open_browser, open_page, save_picture
+from browser import at_width, open_browser, open_page
 
 WIDTHS = [1440, 1024, 768, 390]
 
@@ -49,7 +49,7 @@ def too_wide(browser, seconds=30):
     return found
 
 
-def look(browser, page, out):
+def look(browser, page):
     faults = []
     for width in WIDTHS:
         at_width(browser, width)
@@ -57,20 +57,19 @@ def look(browser, page, out):
             open_page(browser, page)
         else:
             browser.get(f"file://{page}")
-        save_picture(browser, width, out / f"{page.stem}-{width}.png")
         open_folds(browser)
         faults += [f"{width} px: {what} \"{text}\" by {by} px" for what, text, by in too_wide(browser)]
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     pdf = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "preferCSSPageSize": True})
-    (out / f"{page.stem}.pdf").write_bytes(base64.b64decode(pdf["data"]))
+    page.with_suffix(".pdf").write_bytes(base64.b64decode(pdf["data"]))
     assert not faults, f"{page.name} is too wide:\n" + "\n".join(faults)
 
 
 def main():
-    page, out = (pathlib.Path(word).resolve() for word in sys.argv[1:])
     browser = open_browser()
     try:
-        look(browser, page, out)
+        for word in sys.argv[1:]:
+            look(browser, pathlib.Path(word).resolve())
     finally:
         browser.quit()
 

@@ -4,8 +4,8 @@
 # report.html in a real browser: what it shows, what happens when it is clicked, and what comes out of its printer.
 source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
 
-# made: the small scene with its three stages run; the report is out/report.html.
-made() {
+# The small scene with its three stages run; the report is out/report.html.
+test_is_made() {
   scene
   sed -i 's/^end_time_s.*/end_time_s = 3.0\nframe_interval_s = 0.5/' recipe.toml
   echo 'sigma_m = 0.2' >>recipe.toml   # of the survey: scores get a spread
@@ -37,27 +37,24 @@ test_leaves_its_view_in_3d_out_on_request() {
   grep -q '"relief":false' out/report.html || fail "the page is to draw the view all the same"
 }
 
-# widths PAGE: nothing on it is too wide on a desktop, a tablet, a phone, and on paper; pictures lie in shots/.
-widths() {
-  mkdir -p shots
-  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/pipeline/page_widths.py" "$1" shots
-  expect_exit 0 pdftotext -bbox "shots/$(basename "$1" .html).pdf" words.html
-  awk -F'"' '/<page /  { width = $2 }
-    /<word /  { ++count; if ($2 < 20 || $6 > width - 20) { print "beyond the margin on paper: " $0; bad = 1 } }
-    END { exit bad || count < 100 }' words.html >beyond || fail "$1: $(head -5 beyond)"
-}
-
+# Nothing is too wide in any window, nor on paper.
 test_fits_desktop_tablet_phone_and_paper() {
   need_browser
   made
-  widths "$PWD/out/report.html"
   cp -r out other
   "$bin/talus-solve" recipe.toml --out other --on cpu --set solve.base.friction_angle_deg=9 2>/dev/null >stdout ||
     fail "no second run"
   "$bin/talus-postprocess" recipe.toml --out other --set solve.base.friction_angle_deg=9 >stdout 2>stderr ||
     fail "no second results"
   expect_exit 0 "$bin/talus" compare out other
-  widths "$PWD/out/comparison.html"
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tests/pipeline/page_widths.py" out/report.html out/comparison.html
+  local page
+  for page in report comparison; do
+    expect_exit 0 pdftotext -bbox "out/$page.pdf" words.html
+    awk -F'"' '/<page /  { width = $2 }
+      /<word /  { ++count; if ($2 < 20 || $6 > width - 20) { print "beyond the margin on paper: " $0; bad = 1 } }
+      END { exit bad || count < 100 }' words.html >beyond || fail "$page.html: $(head -5 beyond)"
+  done
 }
 
 test_prints_to_a_pdf_with_all_its_maps() {
