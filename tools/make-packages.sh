@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Debian packages of a build (talus or talus-gpu, and talus-doc), in BUILD/packages or DIR. Nothing is compiled: what
 # `make build` has made is installed into them by the rules of cmake/install.cmake.
-# usage: tools/make-packages.sh BUILD [DIR]
+# usage: tools/make-packages.sh BUILD [DIR [OPTION...]]     OPTION: of cpack, besides
 set -euo pipefail
-build=${1:?usage: tools/make-packages.sh BUILD [DIR]}
+build=${1:?usage: tools/make-packages.sh BUILD [DIR [OPTION...]]}
 folder=${2:-$build/packages}
 
 fail() { echo "tools/make-packages.sh: $*" >&2; exit 1; }
@@ -16,7 +16,7 @@ done
 
 rm -rf "$folder"
 mkdir -p "$folder"
-cpack --config "$build/CPackConfig.cmake" -G DEB -B "$(realpath "$folder")" >"$folder/cpack.log" 2>&1 || {
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$(realpath "$folder")" "${@:3}" >"$folder/cpack.log" 2>&1 || {
   tail -n 20 "$folder/cpack.log" >&2
   fail "cpack failed; all that it said is in $folder/cpack.log"
 }

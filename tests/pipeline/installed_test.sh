@@ -158,7 +158,7 @@ test_report_names_the_licence_of_every_library_in_it() {
 # Not the dependencies as such, but that they are those of the programs: without GDAL nothing would start.
 test_packages_ask_for_the_libraries_of_the_programs() {
   need_tool dpkg-shlibdeps
-  expect_exit 0 "$TALUS_SOURCE/tools/make-packages.sh" "$TALUS_BUILD" packages
+  expect_exit 0 "$TALUS_SOURCE/tools/make-packages.sh" "$TALUS_BUILD" packages -D CPACK_DEBIAN_COMPRESSION_TYPE=none
   local package library held
   package=$(compgen -G 'packages/talus_*.deb' || compgen -G 'packages/talus-gpu_*.deb') || fail "made: $(ls packages)"
   for library in gdal hdf5 openvdb netcdf cairo tbb cholmod openturns; do
