@@ -25,41 +25,35 @@ fi
 
 # Whose the files are. Files of a merged /usr are known under either name, and links under their own or their target's.
 declare -A owner=()
+mapfile -t reals < <(if [[ $# -gt 0 ]]; then realpath "$@"; fi)
 if [[ $# -gt 0 ]]; then
-  candidates=()
-  for file in "$@"; do
-    real=$(realpath "$file")
-    candidates+=("$file" "$real" "${file#/usr}" "${real#/usr}")
-  done
   while IFS= read -r line; do owner[${line##*: }]=${line%%[:,]*}; done \
-    < <(dpkg-query -S "${candidates[@]}" 2>/dev/null | grep -v '^diversion')
+    < <(dpkg-query -S "$@" "${reals[@]}" "${@#/usr}" "${reals[@]#/usr}" 2>/dev/null | grep -v '^diversion')
 fi
 
 declare -A carries=()
 add() { carries[$1]+="${carries[$1]:+, }$2"; }
-for package in "${compiled_in[@]}"; do
-  state=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null || true)
-  if [[ $state == ?i* ]]; then add "$package" 'compiled in'; fi
-done
+while IFS= read -r package; do add "$package" 'compiled in'; done < <(
+  dpkg-query -W -f '${db:Status-Abbrev} ${Package}\n' "${compiled_in[@]}" 2>/dev/null | sed -n 's/^.i. *//p' | sort -u)
+number=0
 for file in "$@"; do
   package=
-  for name in "$file" "$(realpath "$file")"; do
+  for name in "$file" "${reals[number++]}"; do
     package=${package:-${owner[$name]:-${owner[${name#/usr}]:-}}}
   done
   [[ -n $package ]] || fail "$file belongs to no package, so its licence is not known"
-  add "$package" "$(basename "$file")"
+  add "$package" "${file##*/}"
 done
 
 {
   printf '%s\n' '# Notices' '' 'What Talus carries of others, by the package it was taken from.' \
     'The licence of each is in the file of its name.' '' '| package | version | what |' '| --- | --- | --- |'
-  for package in "${!carries[@]}"; do
+  dpkg-query -W -f '${Package} ${Version}\n' "${!carries[@]}" | sort -u | while read -r package version; do
     notice=/usr/share/doc/$package/copyright
     [[ -s $notice ]] || fail "$package has no $notice (images that leave documents out cannot make bundles)"
     cp -L "$notice" "$folder/$package.txt"
-    printf '| [%s](%s.txt) | %s | %s |\n' "$package" "$package" \
-      "$(dpkg-query -W -f '${Version}\n' "$package" | sed q)" "${carries[$package]}"
-  done | sort
+    printf '| [%s](%s.txt) | %s | %s |\n' "$package" "$package" "$version" "${carries[$package]}"
+  done
 } >"$folder/README.md"
 
 # Copyright files name the long licences by their place on a Debian system.

@@ -82,21 +82,16 @@ for module in "${modules[@]}"; do built+=$'\n'$build/lib/$(basename "$module"); 
 needed=$(xargs ldd <<<"$built")
 unresolved=$(grep 'not found' <<<"$needed" || true)
 [[ -z $unresolved ]] || fail "libraries not found on this machine: $unresolved"
-carried=()   # what of others is in the bundle, by its place on this machine
-while read -r soname path; do
-  if [[ ! $soname =~ $outside ]]; then
-    cp -L "$path" "$bundle/lib/$soname"
-    carried+=("$path")
-  fi
-done < <(awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' <<<"$needed" | sort -u)
+# What of others is in the bundle, by its place on this machine.
+mapfile -t carried < <(awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' <<<"$needed" | sort -u | grep -vE "$outside" |
+  cut -d ' ' -f 2)
+cp -L "${carried[@]}" "$bundle/lib/"
 
 # A library with a search path of its own would look there instead of in the bundle.
 chmod u+w "$bundle"/lib/*
-for library in "$bundle"/lib/*; do
-  if [[ -n $(patchelf --print-rpath "$library") || " ${modules[*]} " == *" $library "* ]]; then
-    patchelf --force-rpath --set-rpath '$ORIGIN' "$library"
-  fi
-done
+mapfile -t searching < <(readelf -d "$bundle"/lib/* | awk '/^File: / { file = $2 } /R(UN)?PATH/ { print file }')
+searching+=("${modules[@]}")
+[[ ${#searching[@]} -eq 0 ]] || patchelf --force-rpath --set-rpath '$ORIGIN' "${searching[@]}"
 
 if compgen -G "$bundle/lib/libproj.*" >/dev/null; then
   mkdir -p "$bundle/share/proj"
