@@ -180,7 +180,7 @@ assert abs(closed / released - 1) < 1e-9, f"released {released}, accounted for {
 assert 0 < score["deposit_csi"] <= 1 and 0 < score["footprint_csi"] <= 1
 print("all there")
 PYTHON
-  expect_exit 0 python3 score.py "$out/score.json"
+  expect_exit 0 /usr/bin/python3 score.py "$out/score.json"
   shows 'all there'
 }
 

@@ -47,7 +47,7 @@ test_every_source_says_its_licence() {
   cd "$TALUS_SOURCE"
   git rev-parse --is-inside-work-tree >/dev/null 2>&1 || skip "this is no checkout, which knows what is a source"
   grep -q 'SPDX-License-Identifier' CMakeLists.txt || skip "the sources have no licence lines yet"
-  expect_exit 0 python3 tools/add-licence-lines.py --check
+  expect_exit 0 /usr/bin/python3 tools/add-licence-lines.py --check
 }
 
 test_licence_lines_are_added_once_and_behind_the_shebang() {
@@ -56,10 +56,10 @@ test_licence_lines_are_added_once_and_behind_the_shebang() {
   printf '#pragma once\n' >a.hpp
   printf 'words\n' >notes.md
   git add -A
-  expect_exit 1 python3 "$TALUS_SOURCE/tools/add-licence-lines.py" --check
+  expect_exit 1 /usr/bin/python3 "$TALUS_SOURCE/tools/add-licence-lines.py" --check
   [[ $(<stdout) == $'a.hpp\nrun' ]] || fail "it names: $(<stdout)"
-  expect_exit 0 python3 "$TALUS_SOURCE/tools/add-licence-lines.py"
-  expect_exit 0 python3 "$TALUS_SOURCE/tools/add-licence-lines.py"
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tools/add-licence-lines.py"
+  expect_exit 0 /usr/bin/python3 "$TALUS_SOURCE/tools/add-licence-lines.py"
   [[ $(<stdout) == '2 sources, 0 of them changed' ]] || fail "$(<stdout)"
   [[ $(sed -n 3p run) == '# SPDX-License-Identifier: GPL-3.0-or-later' && $(sed -n 4p run) == echo ]] || fail "$(<run)"
   [[ $(<a.hpp) == *$'GPL-3.0-or-later\n#pragma once' && $(<notes.md) == words ]] || fail "$(<a.hpp)"
