@@ -31,7 +31,7 @@ test_wheel_runs_the_examples_in_a_fresh_environment() {
   local examples=$TALUS_SOURCE/python/examples
   unset PYTHONPATH TALUS_PROGRAMS
   expect_exit 0 "$TALUS_SOURCE/tools/make-wheel.sh" "$TALUS_BUILD" wheels
-  expect_exit 0 /usr/bin/python3 -m venv --system-site-packages fresh
+  expect_exit 0 /usr/bin/python3 -m venv --system-site-packages --without-pip fresh
   expect_exit 0 fresh/bin/python -m pip install --quiet --no-index --no-deps wheels/talus-*.whl
   expect_exit 0 fresh/bin/python -c 'import talus, talus.in_process as p; print(p._core().__file__)'
   [[ $(<stdout) == "$TALUS_SCRATCH"/fresh/* ]] || fail "the module is not that of the wheel: $(<stdout)"
