@@ -6,7 +6,8 @@
 set(TALUS_SHARE ${CMAKE_INSTALL_DATADIR}/talus)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)   # the tests need not be built for it: make build, then cmake --install
 
-set_target_properties(${TALUS_PROGRAMS} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/talus")
+set_target_properties(${TALUS_PROGRAMS} PROPERTIES
+  INSTALL_RPATH "$ORIGIN/../lib;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/talus")
 install(TARGETS ${TALUS_PROGRAMS} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 install(TARGETS talus_openturns LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/talus COMPONENT runtime)
 

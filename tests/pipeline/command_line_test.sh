@@ -25,6 +25,15 @@ test_version_names_the_commit() {
   done
 }
 
+test_no_library_is_looked_for_in_the_folder_of_the_caller() {
+  local program
+  for program in "${programs[@]}"; do
+    LD_DEBUG=libs "$bin/$program" --version >/dev/null 2>searched
+    grep -q 'trying file=/' searched || fail "the loader does not say where it looks"
+    if grep -E 'trying file=([^/]|$)' searched; then fail "$program takes libraries of the folder it is called in"; fi
+  done
+}
+
 test_unknown_option_is_a_usage_error() {
   local program
   for program in "${programs[@]}"; do
