@@ -121,8 +121,8 @@ struct GridToParticle {
   template <bool usual>
   TALUS_HD Sums sum_up(const Stencil<Real, Shape>& s) const {
     Sums sums;
-    const bool follows = usual || grid.mapping == Mapping::terrain_following, affine = usual || this->affine,
-               bound_by_layers = usual || this->bound_by_layers, has_changes = usual || changes;
+    const bool follows = usual || grid.mapping == Mapping::terrain_following, with_affine = usual || affine,
+               by_layers = usual || bound_by_layers, has_changes = usual || changes;
     TALUS_UNROLL  // weights looked up by a loop's counter would go through memory
         for (int b = 0; b < Shape::width; ++b) {
       TALUS_UNROLL
@@ -144,15 +144,15 @@ struct GridToParticle {
           const Vec3<Real> v{node.x, node.y, node.z};
           mean += v * s.wz[c];
           rise += v * s.gz[c];
-          if (affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
-          if (!bound_by_layers) mass += node.w * s.wz[c];
+          if (with_affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
+          if (!by_layers) mass += node.w * s.wz[c];
           if (has_changes) {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
           }
         }
         const Real w = s.wx[a] * s.wy[b];
-        if (!bound_by_layers) sums.company.add(mass, s.wx[a], s.wy[b]);
+        if (!by_layers) sums.company.add(mass, s.wx[a], s.wy[b]);
         sums.velocity += mean * w;
         sums.change += change * w;
         sums.climb += (mean.z - nx * mean.x - ny * mean.y) * w;
@@ -160,7 +160,7 @@ struct GridToParticle {
         sums.gradient.a += mean * (s.gx[a] * s.wy[b]);
         sums.gradient.b += mean * (s.wx[a] * s.gy[b]);
         sums.gradient.c += rise * w;
-        if (affine) {
+        if (with_affine) {
           sums.moment.a += mean * (w * (s.near_x + Real(a)));
           sums.moment.b += mean * (w * (s.near_y + Real(b)));
           sums.moment.c += lever * w;
