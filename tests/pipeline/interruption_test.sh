@@ -155,20 +155,20 @@ test_preprocess_hears_the_signal() {
   scene
   local name
   for name in before after; do
-    gdal_translate -q -outsize 1000 1000 -r bilinear -a_srs EPSG:32611 $name.asc $name.tif
+    gdal_translate -q -outsize 2000 2000 -r bilinear -a_srs EPSG:32611 $name.asc $name.tif
   done
   sed -i 's/\.asc"/.tif"/' recipe.toml
-  hears preprocess 0.3 0.6 1 2 4
+  hears preprocess 0.3 1 2 4 8
 }
 
 test_postprocess_hears_the_signal() {
   need_tool gdal_translate
   scene
-  gdal_translate -q -outsize 1400 1400 survey.asc survey.tif   # which is drawn 200 times
+  gdal_translate -q -outsize 2000 2000 survey.asc survey.tif   # which is drawn 200 times
   sed -i 's/^thickness = .*/thickness = "survey.tif"\nsigma_m = 0.28/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve
-  hears postprocess 0.3 0.5 1 2 4 8
+  hears postprocess 0.3 1 2 4 8 16
 }
 
 # Gravity loading has nothing to save: it stops at once.
