@@ -216,6 +216,7 @@ GridView<Real> SparseGrid<Real, Device>::view() const {
 template <class Real, class Device>
 void SparseGrid<Real, Device>::fit(Particles<Real, Device>& points, int outflow_count) {
   order_.sort(points, outflow_count);
+  while (points.split(view(), order_.home())) order_.sort(points, 0);
   storage_.fit(points.view(), {.columns = 1 + drift_.columns, .layers = 1 + drift_.layers});
 }
 

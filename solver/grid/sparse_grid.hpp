@@ -132,8 +132,8 @@ class SparseGrid {
   SparseGrid(const Device& device, const GridShape& shape, const Drift& drift, bool in_order = false,
              bool by_lowest_node = false);
 
-  /// The method sorts the points by home cell, drops those that left (the `outflow_count` last ones after sorting), and
-  /// gives storage to every column and layer they reach until they have drifted too far.
+  /// Sorts the points by home cell, drops those that left (the `outflow_count` last ones after sorting), halves those
+  /// drawn out too far, and gives storage to every column and layer they reach until they have drifted too far.
   void fit(Particles<Real, Device>& points, int outflow_count);
 
   const Device& device() const { return device_; }  ///< device that the grid is on

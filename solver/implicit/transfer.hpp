@@ -153,6 +153,7 @@ struct AcceptStep {
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
     if constexpr (Shape::averaged) points.stretch_box(p, gradient, g.s.slope_x, g.s.slope_y);
+    if (points.piece) points.stretch_sides(p, gradient);
     const double across = static_cast<double>(grid.spacing), up = static_cast<double>(grid.layer_height);
     points.move_by(p, Vec3<double>{move.x / across, move.y / across, move.z / up}, grid.walls);
     settle(p, g, wave_speed(material, state));

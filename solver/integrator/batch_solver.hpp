@@ -19,6 +19,8 @@ namespace talus::solver {
 
 /// The steps between sorts on a GPU: order within cells gains it little, and sorting takes as long as ten steps.
 inline constexpr int gpu_steps_between_sorts = 256;
+/// The same where points are split at sorts: a flow should not be drawn out much in between.
+inline constexpr int gpu_steps_between_splits = 64;
 /// The steps between sorts where many points keep a GPU busy: what lies apart costs more than sorting then.
 inline constexpr int busy_gpu_steps_between_sorts = 32;
 /// The steps between sorts on a GPU for a number of points: `busy_gpu_steps_between_sorts` where many points have wide
@@ -223,7 +225,10 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
 
   /// The steps until the next sort, for the points there are.
   int steps_between_sorts() const {
-    if constexpr (Device::is_gpu) return steps_between_sorts_on_gpu<Shape>(points_.count());
+    if constexpr (Device::is_gpu) {
+      const int most = settings_.needs.spreads ? gpu_steps_between_splits : gpu_steps_between_sorts;
+      return std::min(most, steps_between_sorts_on_gpu<Shape>(points_.count()));
+    }
     return cpu_steps_between_sorts;
   }
 

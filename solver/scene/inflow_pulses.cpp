@@ -274,6 +274,7 @@ void InflowSeeder::add_point(const Strip& strip, double way, double height, Infl
   const double side = std::sqrt(strip.way * line_.ground.strip);  // of a square of the same area along x and y
   s.extent[0][p] = s.extent[1][p] = side / shape.spacing;
   s.extent[2][p] = strip.volume / (side * side * shape.layer_height);
+  lay_sides(s, p, shape, terrain_.terrain, side, side);
   s.release[p] = matter_.release;
   s.material[p] = matter_.material;
   inflow.line_x.push_back(strip.middle[0]);

@@ -124,6 +124,7 @@ ParticleState place_points(const Domain& domain, const SolveOptions& options, co
     s.extent[0][p] = wide / shape.spacing;
     s.extent[1][p] = deep / shape.spacing;
     s.extent[2][p] = s.volume[p] / (wide * deep * shape.layer_height);
+    lay_sides(s, p, shape, terrain, wide, deep);
     s.id[p] = static_cast<int>(p);
     s.release[p] = domain.points.release[p];
   }
@@ -137,6 +138,13 @@ double lowest_weighed(const SolveOptions& options) {
 }
 
 }  // namespace
+
+void lay_sides(ParticleState& points, std::size_t p, const GridShape& shape, const TerrainTables& terrain, double wide,
+               double deep) {
+  const std::size_t column = shape.index(points.cell[0][p], points.cell[1][p]);
+  const double sides[6] = {wide, 0, terrain.slope_x[column] * wide, 0, deep, terrain.slope_y[column] * deep};
+  for (int n = 0; n < 6; ++n) points.sides[n][p] = sides[n];
+}
 
 void each_bed(const Domain& domain, const SolveOptions& options,
               const std::function<void(const BaseFriction<double>&)>& visit) {

@@ -21,6 +21,10 @@ inline void place_in_cells(double position, int& cell, double& offset) {
   offset = position - nearest;
 }
 
+/// Lays the two sides of point p, `wide` along x and `deep` along y [m], along the ground below it.
+void lay_sides(ParticleState& points, std::size_t p, const GridShape& shape, const TerrainTables& terrain, double wide,
+               double deep);
+
 /// This function places the seeds of a domain on the background grid. It throws DataError when a seed lies outside the
 /// ground, or outside the active cells that the domain's file names.
 Scene make_scene(const Domain& domain, const SolveOptions& options);

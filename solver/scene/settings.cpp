@@ -32,6 +32,8 @@ ParticleNeeds needs_of(const SolveOptions& o) {
           .plastic_volume = o.any_material([](const MaterialOptions& m) { return m.dilates(); }),
           .boxes = o.shape == ShapeKind::gimp,
           .loads = !o.loads.empty(),
+          .spreads = o.shape == ShapeKind::quadratic && abilities_of(o.integrator).carry_inertia &&
+                     o.any_material([](const MaterialOptions& m) { return !m.holds_tension(); }),
           .several_materials = !o.parts.empty(),
           .softening = o.any_material([](const MaterialOptions& m) { return m.softens(); })};
 }
@@ -86,7 +88,7 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.common.gravity_ramp = 1;
   hold(s.common.materials.in_double);
   hold(s.common.materials.in_single);
-  s.common.needs.plastic_volume = s.common.needs.softening = false;
+  s.common.needs.plastic_volume = s.common.needs.softening = s.common.needs.spreads = false;
   s.common.bed = {};
   s.common.bed.law = FrictionLaw::stick;
   s.common.separation = {};

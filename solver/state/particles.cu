@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "solver/parallel/algorithms.hpp"
+#include "solver/state/sides.hpp"
+
 namespace talus {
 namespace {
 
@@ -54,17 +57,24 @@ struct CopyOver {
   TALUS_HD void operator()(int p) const { to[p] = from[p]; }
 };
 
-/// This function adds a list behind what an array holds. Where that has no room, it takes some for as many elements
-/// again, so that what grows bit by bit is copied seldom.
+/// This function makes an array longer and keeps what it holds. Where that has no room, it takes some for as many
+/// elements again, so that what grows bit by bit is copied seldom.
+template <class Number, class Device>
+void grow(Buffer<Number, Device>& array, std::size_t all) {
+  const std::size_t before = array.size();
+  if (all * sizeof(Number) > array.bytes()) {
+    Buffer<Number, Device> larger(array.device(), std::max(all, 2 * before));
+    for_each(array.device(), static_cast<int>(before), CopyOver<Number>{array.data(), larger.data()});
+    array.swap(larger);
+  }
+  array.resize(all);
+}
+
+/// This function adds a list behind what an array holds.
 template <class Number, class Device, class Value>
 void append_list(Buffer<Number, Device>& to, const std::vector<Value>& list) {
-  const std::size_t before = to.size(), all = before + list.size();
-  if (all * sizeof(Number) > to.bytes()) {
-    Buffer<Number, Device> larger(to.device(), std::max(all, 2 * before));
-    for_each(to.device(), static_cast<int>(before), CopyOver<Number>{to.data(), larger.data()});
-    to.swap(larger);
-  }
-  to.resize(all);
+  const std::size_t before = to.size();
+  grow(to, before + list.size());
   const std::vector<Number> values(list.begin(), list.end());
   detail::upload(to.device(), to.data() + before, values.data(), values.size() * sizeof(Number));
 }
@@ -79,6 +89,142 @@ void download_list(const Buffer<Number, Device>& from, std::vector<Value>& to) {
     to.assign(values.begin(), values.end());
   }
 }
+
+/// Between sides in metres and in cells, at the ground below a point.
+template <class Real>
+struct CellFrame {
+  Real spacing, layer_height, slope_x = 0, slope_y = 0;
+
+  TALUS_HD CellFrame(const GridView<Real>& grid, const ParticleView<Real>& points, int p)
+      : spacing(grid.spacing), layer_height(grid.layer_height) {
+    if (grid.mapping != Mapping::terrain_following) return;
+    const int column = grid.column(points.cell[0][p], points.cell[1][p]);
+    slope_x = grid.slope_x[column];
+    slope_y = grid.slope_y[column];
+  }
+  TALUS_HD Vec3<Real> in_cells(const Vec3<Real>& e) const {
+    return {e.x / spacing, e.y / spacing, (e.z - slope_x * e.x - slope_y * e.y) / layer_height};
+  }
+  TALUS_HD Vec3<Real> in_metres(const Vec3<Real>& e) const {
+    return {e.x * spacing, e.y * spacing, e.z * layer_height + (slope_x * e.x + slope_y * e.y) * spacing};
+  }
+  /// The sides of point p in cells, shear taken off.
+  TALUS_HD Sides<Real> sides_of(const ParticleView<Real>& points, int p) const {
+    Sides<Real> s{in_cells(points.side_of(p, 0)), in_cells(points.side_of(p, 1))};
+    s.reduce();
+    return s;
+  }
+};
+
+/// One thread: one point. It is to be halved where its longer side exceeds a cell, the reach of its functions, and
+/// where one of the columns that the side lies over holds few points: beyond there would be a gap between it and the
+/// next. Not in a spray, whose mass has come apart, nor once too often.
+template <class Real>
+struct MarkLong {
+  static constexpr int enough = 8;      // points in a column, over three layers: two along each side of a cell
+  static constexpr double spray = 0.7;  // ln of the volume over the initial one
+  static constexpr double lost = 100;   // a side in cells that no flow has
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  const std::uint64_t* keys;
+  int* marks;
+
+  TALUS_HD void operator()(int p) const { marks[p] = is_long(p) ? 1 : 0; }
+
+ private:
+  TALUS_HD bool is_long(int p) const {
+    if (points.cell[0][p] < 0 || points.piece[p] >= smallest_parts || points.log_volume[p] > Real(spray)) return false;
+    const Vec3<Real> side = CellFrame<Real>(grid, points, p).sides_of(points, p).longer;
+    const Real square = dot(side, side);
+    if (!(square > Real(1)) || !(square < Real(lost * lost))) return false;
+    return few(p, Real(0), Real(0)) || few(p, side.x, side.y) || few(p, -side.x, -side.y);
+  }
+  /// Whether the column at the end of half a side (x, y) from point p holds few points near its layer.
+  TALUS_HD bool few(int p, Real x, Real y) const {
+    const int i = points.cell[0][p] + static_cast<int>(floor(points.offset[0][p] + Real(0.5) * x + Real(0.5)));
+    const int j = points.cell[1][p] + static_cast<int>(floor(points.offset[1][p] + Real(0.5) * y + Real(0.5)));
+    if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows) return false;
+    const int k = points.cell[2][p];
+    return before(home_key(grid.block_columns_x, i, j, k + 2)) -
+               before(home_key(grid.block_columns_x, i, j, k > 0 ? k - 1 : 0)) <
+           enough;
+  }
+  /// The points that come before a key.
+  TALUS_HD int before(std::uint64_t key) const {
+    int low = 0, high = points.count;
+    while (low < high) {
+      const int middle = low + (high - low) / 2;
+      if (keys[middle] < key)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low;
+  }
+};
+
+/// The places of the copies of marked points: the marks before each point, and all of them.
+struct CopyPlaces {
+  const int* before;
+  int count, more;
+  TALUS_HD bool marked(int p) const { return (p + 1 < count ? before[p + 1] : more) > before[p]; }
+  TALUS_HD int operator[](int p) const { return count + before[p]; }
+};
+
+template <class T>
+struct CopyMarked {
+  CopyPlaces places;
+  T* list;
+  TALUS_HD void operator()(int p) const {
+    if (places.marked(p)) list[places[p]] = list[p];
+  }
+};
+
+/// One thread: one point. A marked one and its copy become halves, whose middles lie a quarter of the side from its
+/// own.
+template <class Real>
+struct Halve {
+  GridView<Real> grid;
+  ParticleView<Real> points;
+  CopyPlaces places;
+  bool affine;
+
+  TALUS_HD void operator()(int p) const {
+    if (!places.marked(p)) return;
+    const CellFrame<Real> frame(grid, points, p);
+    Sides<Real> s = frame.sides_of(points, p);
+    const Vec3<Real> way = s.longer * Real(0.25);
+    s.longer = s.longer * Real(0.5);
+    const int copy = places[p];
+    for (const int q : {p, copy}) {
+      points.volume[q] *= Real(0.5);
+      points.piece[q] *= 2;
+      points.set_side(q, 0, frame.in_metres(s.shorter));
+      points.set_side(q, 1, frame.in_metres(s.longer));
+    }
+    ++points.piece[copy];
+    carry(p, way);
+    carry(copy, way * Real(-1));
+  }
+
+ private:
+  /// Moves a half by `way` [cells], to the velocity there.
+  TALUS_HD void carry(int p, const Vec3<Real>& way) const {
+    if (affine) {
+      const Mat3<Real> c = points.affine_of(p);
+      points.set_velocity(p, points.velocity_of(p) + c.a * way.x + c.b * way.y + c.c * way.z);
+    }
+    const int from[3] = {points.cell[0][p], points.cell[1][p], points.cell[2][p]};
+    const Real offset[3] = {points.offset[0][p], points.offset[1][p], points.offset[2][p]};
+    points.move_by(p, way, grid.walls);
+    const int i = points.cell[0][p], j = points.cell[1][p];
+    if (i >= 0 && j >= 0 && i < grid.columns && j < grid.rows && grid.open[grid.column(i, j)]) return;
+    for (int a = 0; a < 3; ++a) {  // not out of the domain
+      points.cell[a][p] = from[a];
+      points.offset[a][p] = offset[a];
+    }
+  }
+};
 
 }  // namespace
 
@@ -201,6 +347,30 @@ void Particles<Real, Device>::reorder(const Buffer<int, Device>& order, int coun
   };
   visit_particle_fields(sort_one, arrays_);
   count_ = count;
+}
+
+template <class Real, class Device>
+bool Particles<Real, Device>::split(const GridView<Real>& grid, const std::uint64_t* keys) {
+  if (!needs_.spreads) return false;
+  const int before = count_;
+  Buffer<int, Device>& marks = int_scratch_;
+  marks.resize(static_cast<std::size_t>(before));
+  for_each(device_, before, MarkLong<Real>{grid, view(), keys, marks.data()});
+  const int more = exclusive_sum(device_, marks.data(), marks.data(), before);
+  if (more == 0) return false;
+  const CopyPlaces places{marks.data(), before, more};
+  const auto copy = [&](const ParticleField& field, int, auto& array) {
+    if (!holds(field)) return;
+    const auto all = static_cast<std::size_t>(before + more);
+    if (field.kept == Kept::within_step) return array.resize(all);
+    grow(array, all);
+    using Number = std::remove_pointer_t<decltype(array.data())>;
+    for_each(device_, before, CopyMarked<Number>{places, array.data()});
+  };
+  visit_particle_fields(copy, arrays_);
+  count_ += more;
+  for_each(device_, before, Halve<Real>{grid, view(), places, needs_.affine_transfer});
+  return true;
 }
 
 template class Particles<float, CpuDevice>;

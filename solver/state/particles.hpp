@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -21,6 +22,7 @@ struct ParticleNeeds {
   bool remapped_velocity = false;  ///< explicit steps by MUSL
   bool accelerations = false;      ///< implicit steps
   bool loads = false;
+  bool spreads = false;  ///< mass may be drawn out so far that its points are split
   bool several_materials = false;
   bool softening = false;  ///< some material softens
   bool always = true;      ///< last, so that no list of values switches it off by position
@@ -55,6 +57,10 @@ enum class Kept {
   FIELD(volume,             Reals, 1, "m3",    always,            in_frames,     0)                \
   /* sides of the box that a point stands for, along x, y, zeta */                                 \
   FIELD(extent,             Reals, 3, "cells", boxes,             in_checkpoint, 0)                \
+  /* two sides of what a point stands for, along the ground at first: x, y, z of each */           \
+  FIELD(sides,              Reals, 6, "m",     spreads,           in_checkpoint, 0)                \
+  /* which part of the seeded point: 1, or of the halves of piece n the 2n-th and the next */       \
+  FIELD(piece,              Ints,  1, "1",     spreads,           in_frames,     1)                \
   /* displacement of this step */                                                                  \
   FIELD(move,               Reals, 3, "cells", remapped_velocity, within_step,   0)                \
   FIELD(acceleration,       Reals, 3, "m/s2",  accelerations,     in_checkpoint, 0)                \
@@ -69,6 +75,23 @@ enum class Kept {
   /* equivalent plastic shear strain so far */                                                     \
   FIELD(plastic_shear,      Reals, 1, "1",     softening,         in_frames,     0)
 // clang-format on
+
+/// How often a point may be halved.
+inline constexpr int most_halvings = 2;
+/// The smallest parts of a point.
+inline constexpr int smallest_parts = 1 << most_halvings;
+
+/// The smallest parts of a seeded point that a piece of it holds, of 0 to smallest_parts - 1.
+struct PartRange {
+  int first, count;
+  TALUS_HD explicit PartRange(int piece) : first(piece), count(1) {
+    while (first < smallest_parts) {
+      first *= 2;
+      count *= 2;
+    }
+    first -= smallest_parts;
+  }
+};
 
 /// A member of ParticleNeeds. (Under a name, since nvcc writes a bare one in a way that GCC warns of.)
 using ParticleNeed = bool ParticleNeeds::*;
@@ -150,6 +173,11 @@ struct ParticleView {
 
   /// The velocity of point p [m/s].
   TALUS_HD Vec3<Real> velocity_of(int p) const { return {velocity[0][p], velocity[1][p], velocity[2][p]}; }
+  TALUS_HD void set_velocity(int p, const Vec3<Real>& v) const {
+    velocity[0][p] = v.x;
+    velocity[1][p] = v.y;
+    velocity[2][p] = v.z;
+  }
   /// The elastic state of point p, as its material keeps it [-].
   TALUS_HD Sym3<Real> elastic_of(int p) const {
     return {elastic[0][p], elastic[1][p], elastic[2][p], elastic[3][p], elastic[4][p], elastic[5][p]};
@@ -188,6 +216,23 @@ struct ParticleView {
     extent[0][p] *= Real(1) + g.a.x + slope_x * g.c.x;
     extent[1][p] *= Real(1) + g.b.y + slope_y * g.c.y;
     extent[2][p] *= Real(1) + g.c.z - rise;
+  }
+
+  /// Side 0 or 1 of what point p stands for [m].
+  TALUS_HD Vec3<Real> side_of(int p, int side) const {
+    return {sides[3 * side][p], sides[3 * side + 1][p], sides[3 * side + 2][p]};
+  }
+  TALUS_HD void set_side(int p, int side, const Vec3<Real>& e) const {
+    sides[3 * side][p] = e.x;
+    sides[3 * side + 1][p] = e.y;
+    sides[3 * side + 2][p] = e.z;
+  }
+  /// Turns and stretches the sides of point p with the mass, by g = dt grad v.
+  TALUS_HD void stretch_sides(int p, const Mat3<Real>& g) const {
+    for (int side = 0; side < 2; ++side) {
+      const Vec3<Real> e = side_of(p, side);
+      set_side(p, side, e + g.a * e.x + g.b * e.y + g.c * e.z);
+    }
   }
 
   /// Moves point p by `way` [cells] to its new cell and offset: nothing goes below the ground or behind a wall.
@@ -243,6 +288,10 @@ class Particles {
   std::size_t bytes() const;
   /// The initial volumes of the points [m3], on the device.
   const Buffer<Real, Device>& volume() const { return arrays_.volume; }
+
+  /// Halves points that are drawn out beyond a cell of the grid (T10c); returns whether there were any. `keys`: those
+  /// of the points' cells (home_key()), by which they are sorted; the halves are not.
+  bool split(const GridView<Real>& grid, const std::uint64_t* keys);
 
   /// The method puts the points in a new order: point order[p] becomes point p; only the first `count` are kept.
   void reorder(const Buffer<int, Device>& order, int count);

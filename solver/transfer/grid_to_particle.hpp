@@ -180,9 +180,7 @@ struct GridToParticle {
       atomic_add(&clock->budget.transfer_loss,
                  0.5 * mass * (static_cast<double>(dot(old, old)) - static_cast<double>(dot(v, v))));
     }
-    points.velocity[0][p] = v.x;
-    points.velocity[1][p] = v.y;
-    points.velocity[2][p] = v.z;
+    points.set_velocity(p, v);
     if (affine) points.set_affine(p, s.affine_velocity(sums.moment, sums.gradient));
     const Vec3<Real> move{sums.velocity.x * dt / grid.spacing, sums.velocity.y * dt / grid.spacing,
                           (sums.climb - climb_ahead(sums, dt)) * dt / grid.layer_height};
@@ -227,6 +225,7 @@ struct GridToParticle {
     points.log_volume[p] = state.log_volume;
     if (dilatant) points.plastic_log_volume[p] = state.plastic_log_volume;
     if constexpr (Shape::averaged) points.stretch_box(p, g, s.slope_x, s.slope_y);
+    if (points.piece) points.stretch_sides(p, g);
     if constexpr (part == Gather::deformation) {
       points.move_by(p, Vec3<Real>{points.move[0][p], points.move[1][p], points.move[2][p]}, grid.walls);
     }

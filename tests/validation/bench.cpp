@@ -45,27 +45,41 @@ Points frame_of(const Columns& c, std::size_t first, std::size_t count, std::siz
   frame.velocity.assign(points, {});
   frame.volume.assign(points, 0);
   frame.pressure.assign(points, 0);
+  std::vector<bool> taken(points);
   for (std::size_t p = first; p < first + count; ++p) {
-    const auto id = static_cast<std::size_t>(c.id[p]);
+    auto at = static_cast<std::size_t>(c.id[p]);
+    if (taken[at])
+      at = frame.add();
+    else
+      taken[at] = true;
     for (std::size_t a = 0; a < 3; ++a) {
-      frame.position[id][a] = c.position[3 * p + a];
-      frame.velocity[id][a] = c.velocity[3 * p + a];
+      frame.position[at][a] = c.position[3 * p + a];
+      frame.velocity[at][a] = c.velocity[3 * p + a];
     }
-    frame.volume[id] = c.volume[p];
-    frame.pressure[id] = c.pressure[p];
+    frame.volume[at] = c.volume[p];
+    frame.pressure[at] = c.pressure[p];
   }
   return frame;
 }
 
-/// x of the points that are in the domain.
-std::vector<double> along_x(const Points& points) {
-  std::vector<double> x;
-  for (const auto& p : points.position)
-    if (std::isfinite(p[0])) x.push_back(p[0]);
-  return x;
+/// x [m] and volume [m3] of the points that are in the domain, by x.
+std::vector<std::pair<double, double>> along_x(const Points& points) {
+  std::vector<std::pair<double, double>> parts;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (std::isfinite(points.position[p][0])) parts.emplace_back(points.position[p][0], points.volume[p]);
+  std::sort(parts.begin(), parts.end());
+  return parts;
 }
 
 }  // namespace
+
+std::size_t Points::add() {
+  position.emplace_back();
+  velocity.emplace_back();
+  volume.push_back(0);
+  pressure.push_back(0);
+  return size() - 1;
+}
 
 std::vector<Points> read_points(const std::filesystem::path& run) {
   const auto file = h5::File::open(run, {run, "Run talus-solve again"});
@@ -86,22 +100,38 @@ std::vector<Points> read_points(const std::filesystem::path& run) {
   return frames;
 }
 
-double front_of(const Points& points, double cell, double point_spacing) {
-  std::vector<double> x = along_x(points);
-  std::sort(x.begin(), x.end());
-  double front = 0;
-  for (const double at : x) {
-    if (at > front + cell + point_spacing) break;
-    front = at;
+std::array<double, 3> centre_of(const Points& points) {
+  std::array<double, 3> sum{};
+  double all = 0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto volume = static_cast<double>(points.volume[p]);
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += volume * points.position[p][a];
+    all += volume;
   }
-  return front + 0.5 * point_spacing;
+  return {sum[0] / all, sum[1] / all, sum[2] / all};
+}
+
+double front_of(const Points& points, double cell, const std::function<double(double)>& breadth) {
+  const auto parts = along_x(points);
+  double front = std::numeric_limits<double>::quiet_NaN(), volume = 0;
+  for (std::size_t last = 0, first = 0; last < parts.size(); ++last) {
+    const double x = parts[last].first;
+    volume += parts[last].second;
+    while (parts[first].first < x - cell) volume -= parts[first++].second;
+    if (volume > front_thickness * cell * breadth(x)) front = x;
+  }
+  return front;
 }
 
 double reach_of(const Points& points) {
-  std::vector<double> x = along_x(points);
-  const auto at = x.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(x.size()));
-  std::nth_element(x.begin(), at, x.end());
-  return *at;
+  const auto parts = along_x(points);
+  double all = 0, so_far = 0;
+  for (const auto& part : parts) all += part.second;
+  for (const auto& [x, volume] : parts) {
+    so_far += volume;
+    if (so_far > 0.99 * all) return x;
+  }
+  return parts.back().first;
 }
 
 long cost_bound(long recorded) { return std::lround(std::ceil(1.15 * static_cast<double>(recorded))) + 2; }

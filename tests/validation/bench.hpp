@@ -17,7 +17,8 @@
 
 namespace talus::validation {
 
-/// Index = id; a point that left the domain has NaN for a position.
+/// Index = id; a point that left the domain has NaN for a position. Of a point that was split, the first part has its
+/// place, and the others stand behind all ids.
 struct Points {
   double time = 0;                              // [s]
   std::vector<std::array<double, 3>> position;  // [m]
@@ -25,16 +26,24 @@ struct Points {
   std::vector<float> volume;                    // initial [m3]
   std::vector<float> pressure;                  // minus the mean Kirchhoff stress [Pa]
   std::size_t size() const { return position.size(); }
+  std::size_t add();  // one more, whose place it returns
 };
 
 /// From group VTKHDF of run.h5; none where it has no frames of points, as a search for a factor. Throws DataError.
 std::vector<Points> read_points(const std::filesystem::path& run);
 
-/// Where a deposit along x ends: the last point before a gap of a cell, and half a point (single grains roll on) [m].
-double front_of(const Points& points, double cell, double point_spacing);
+/// The centre of mass [m]; NaN where points left the domain.
+std::array<double, 3> centre_of(const Points& points);
 
-/// How far along x 99 of 100 points got [m]. Where a deposit ends is less: its tip is strings of points a cell apart,
-/// and chance says where they tear. Points that left do not count; there must be one.
+/// The thickness at which a deposit of sand ends: two of the glass beads of Lajeunesse et al. (2005) [m].
+inline constexpr double front_thickness = 2 * 1.15e-3;
+
+/// Where a deposit along x ends: the furthest place with a cell behind it in which it is as thick as that on average;
+/// `breadth`: of the deposit at x [m]. Single grains roll on.
+double front_of(const Points& points, double cell, const std::function<double(double)>& breadth);
+
+/// How far along x 99 % of the volume got [m]. Points that left do not
+/// count; there must be one.
 double reach_of(const Points& points);
 
 /// The cost of a run: steps, and Newton's and linear iterations where there are any, else 0.

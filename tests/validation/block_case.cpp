@@ -54,12 +54,8 @@ std::vector<BlockVariant> block_variants(const Bench& bench) {
 
 /// Planimetric way of the centre between two frames; NaN when points were lost.
 double way_between(const Points& a, const Points& b) {
-  double x = 0, y = 0;
-  for (std::size_t p = 0; p < a.size(); ++p) {
-    x += b.position[p][0] - a.position[p][0];
-    y += b.position[p][1] - a.position[p][1];
-  }
-  return std::hypot(x, y) / static_cast<double>(a.size());
+  const auto from = centre_of(a), to = centre_of(b);
+  return std::hypot(to[0] - from[0], to[1] - from[1]);
 }
 
 double way_of(const Outcome& o) { return o.ok() ? way_between(o.first(), o.last()) : nothing; }
@@ -160,9 +156,7 @@ Outcome shaken(Bench& bench, const ShakenPlane& plane, const Shake& shake, const
 /// Way of the block down the plane [m]; NaN where there is no result.
 double way_down(const Outcome& o, const ShakenPlane& plane) {
   if (!o.ok()) return nothing;
-  double way = 0;
-  for (std::size_t p = 0; p < o.first().size(); ++p) way += o.last().position[p][0] - o.first().position[p][0];
-  return way / static_cast<double>(o.first().size()) / std::cos(ShakenPlane::radians(plane.angle));
+  return way_between(o.first(), o.last()) / std::cos(ShakenPlane::radians(plane.angle));
 }
 
 }  // namespace

@@ -62,14 +62,8 @@ struct Place {
   double along = 0, across = 0, up = 0;
 };
 Place place_of(const Points& points, const Facing& facing) {
-  Place mean;
-  for (const auto& p : points.position) {
-    mean.along += facing.along(p[0], p[1]);
-    mean.across += facing.across(p[0], p[1]);
-    mean.up += p[2];
-  }
-  const auto count = static_cast<double>(points.size());
-  return {mean.along / count, mean.across / count, mean.up / count};
+  const auto [x, y, z] = centre_of(points);
+  return {facing.along(x, y), facing.across(x, y), z};
 }
 
 }  // namespace

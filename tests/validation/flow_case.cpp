@@ -94,17 +94,15 @@ struct CapMotion {
 
 CapMotion motion_of(const Outcome& o, const ParabolicCap::State& state) {
   CapMotion m;
-  double travelled = 0;
   for (std::size_t p = 0; p < o.last().size(); ++p) {
     const auto& x = o.last().position[p];
     const auto& v = o.last().velocity[p];
-    travelled += (x[0] - o.first().position[p][0]) / std::cos(cap.slope);
     m.speed.push_back(static_cast<double>(v[0]) * std::cos(cap.slope) -
                       static_cast<double>(v[2]) * std::sin(cap.slope));
     m.expected.push_back(state.speed + (x[0] * std::cos(cap.slope) + (500 - x[2]) * std::sin(cap.slope) - state.way) *
                                            state.spread / state.width);
   }
-  m.way = travelled / static_cast<double>(m.speed.size());
+  m.way = (centre_of(o.last())[0] - centre_of(o.first())[0]) / std::cos(cap.slope);
   return m;
 }
 

@@ -32,7 +32,9 @@ inline Overrides overrides_of(const Sand& s) {
                                               {"solve.end_time_s", gate_opens + s.flow_time}};
 }
 
-inline double front_of(const Points& points, const Sand& s) { return front_of(points, s.h, s.point_spacing()); }
+inline double front_of(const Points& points, const Sand& s) {
+  return front_of(points, s.h, [&](double) { return s.h; });
+}
 
 /// The height of the highest point and half a point more [m].
 double top_of(const Points& points, const Sand& s);

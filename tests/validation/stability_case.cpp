@@ -11,13 +11,7 @@ namespace talus::validation {
 namespace {
 
 /// Mean distance of the points from the wall at the end [m].
-double centre_of(const Outcome& o) {
-  if (!o.ok()) return nothing;
-  double sum = 0;
-  for (const auto& p : o.last().position) sum += p[0];
-  return sum / static_cast<double>(o.last().size());
-}
-
+double centre_of(const Outcome& o) { return o.ok() ? centre_of(o.last())[0] : nothing; }
 double reach_of(const Outcome& o) { return o.ok() ? reach_of(o.last()) : nothing; }
 double end_of(const Outcome& o, const Sand& s) { return o.ok() ? front_of(o.last(), s) : nothing; }
 

@@ -195,12 +195,16 @@ class Fits {
       refuse(fmt::format("{} of point {} is {}; {} to {} is possible", name, p, values[p], low, high));
     }
   }
-  void all_different(const char* name, const std::vector<int>& values, std::size_t count) const {
-    std::vector<bool> taken(count);
-    for (const int value : values) {
-      const auto place = static_cast<std::size_t>(value);
-      if (taken[place]) refuse(fmt::format("two points have the {} {}", name, value));
-      taken[place] = true;
+  /// Refuses points that hold the same part of one seeded point.
+  void all_different(const std::vector<int>& ids, const std::vector<int>& pieces, std::size_t count) const {
+    std::vector<bool> taken(smallest_parts * count);
+    for (std::size_t p = 0; p < ids.size(); ++p) {
+      const PartRange range(pieces[p]);
+      for (int part = range.first; part < range.first + range.count; ++part) {
+        const auto place = smallest_parts * static_cast<std::size_t>(ids[p]) + static_cast<std::size_t>(part);
+        if (taken[place]) refuse(fmt::format("two points have the id {} and share a piece of it", ids[p]));
+        taken[place] = true;
+      }
     }
   }
 
@@ -235,7 +239,7 @@ void check_points(const Fits& fits, const SolverState& state, std::int64_t pulse
   const ParticleState& points = state.points;
   constexpr double most_layers = 1 << 20, tiny = std::numeric_limits<double>::min();
   const std::size_t seeded = scene.points.size() + scene.inflow.points_in(pulses);
-  if (points.size() > seeded)
+  if (points.size() > smallest_parts * seeded)
     fits.refuse(fmt::format("it holds {} points, of which the scene has {}", points.size(), seeded));
   fits.within("cell_0", points.cell[0], -1, scene.grid.columns - 1);
   const auto left = std::count(points.cell[0].begin(), points.cell[0].end(), -1);
@@ -246,7 +250,8 @@ void check_points(const Fits& fits, const SolverState& state, std::int64_t pulse
   for (const auto& offset : points.offset) fits.within("offset", offset, -0.5001, 0.5001);  // single precision rounds
   fits.within("volume", points.volume, tiny, 1e30);
   fits.within("id", points.id, 0, static_cast<double>(seeded) - 1);
-  fits.all_different("id", points.id, seeded);
+  fits.within("piece", points.piece, 1, 2 * smallest_parts - 1);
+  fits.all_different(points.id, points.piece, seeded);
   fits.within("release", points.release, 0, static_cast<double>(scene.release_names.size()) - 1);
   fits.within("load", points.load, -1, static_cast<double>(scene.load_volumes.size()) - 1);
   fits.within("material", points.material, 0,

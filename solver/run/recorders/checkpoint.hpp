@@ -22,7 +22,7 @@ struct RunMemory {
   std::int64_t pulses = 0;                   ///< of the inflows that have entered
   double wall_time = 0;                      ///< [s]
   std::vector<double> initial_thickness;     ///< [m]
-  std::vector<double> section_x, section_y;  ///< where points were at the last record, by id, for sections [cells]
+  std::vector<double> section_x, section_y;  ///< where smallest parts of points were at the last record, for sections
   RunHistory history;
 };
 

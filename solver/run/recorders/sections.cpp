@@ -110,6 +110,16 @@ std::array<double, 2> place_of(const ParticleState& points, std::size_t p) {
   return {points.cell[0][p] + points.offset[0][p], points.cell[1][p] + points.offset[1][p]};
 }
 
+/// The smallest parts of all points, in the order of the points' ids, that point p holds: the first, and how many.
+struct Parts {
+  std::size_t first, count;
+};
+Parts parts_of(const ParticleState& points, std::size_t p) {
+  const PartRange range(points.piece[p]);
+  return {smallest_parts * static_cast<std::size_t>(points.id[p]) + static_cast<std::size_t>(range.first),
+          static_cast<std::size_t>(range.count)};
+}
+
 }  // namespace
 
 SectionRecorder::SectionRecorder(const SolveOptions& options, const Scene& scene)
@@ -179,22 +189,23 @@ void SectionRecorder::record(const Instant& now, RunHistory& history) {
 
 /// The method takes the places of the points for those of the last record.
 void SectionRecorder::follow(const Moment& moment) {
-  x_.assign(volumes_.size(), gone);
-  y_.assign(volumes_.size(), gone);
+  x_.assign(smallest_parts * volumes_.size(), gone);
+  y_.assign(x_.size(), gone);
   for (std::size_t p = 0; p < moment.points.size(); ++p) {
     if (moment.points.cell[0][p] < 0) continue;  // has left the domain
-    const auto id = static_cast<std::size_t>(moment.points.id[p]);
     const MapPlace place = place_of(moment.points, p);
-    x_[id] = place[0];
-    y_[id] = place[1];
+    const auto [first, count] = parts_of(moment.points, p);
+    std::fill_n(x_.begin() + static_cast<std::ptrdiff_t>(first), count, place[0]);
+    std::fill_n(y_.begin() + static_cast<std::ptrdiff_t>(first), count, place[1]);
   }
 }
 
 /// The method takes the line for the place of what is to enter after the first `entered` points.
 void SectionRecorder::expect_inflow(std::size_t entered) {
   for (std::size_t p = entered; p < inflow_.points.size(); ++p) {
-    x_[seeded_ + p] = inflow_.line_x[p];
-    y_[seeded_ + p] = inflow_.line_y[p];
+    const auto first = static_cast<std::ptrdiff_t>(smallest_parts * (seeded_ + p));
+    std::fill_n(x_.begin() + first, smallest_parts, inflow_.line_x[p]);
+    std::fill_n(y_.begin() + first, smallest_parts, inflow_.line_y[p]);
   }
 }
 
@@ -204,8 +215,8 @@ void SectionRecorder::count(const Line& line, const Moment& moment, SectionReadi
   double volume = 0, momentum = 0;
   for (std::size_t p = 0; p < moment.points.size(); ++p) {
     if (moment.points.cell[0][p] < 0) continue;
-    const auto id = static_cast<std::size_t>(moment.points.id[p]);
-    const MapPlace from{x_[id], y_[id]}, to = place_of(moment.points, p);
+    const std::size_t part = parts_of(moment.points, p).first;
+    const MapPlace from{x_[part], y_[part]}, to = place_of(moment.points, p);
     if (from[0] <= gone || beside(from, to, line.low, line.high)) continue;
     const Passage passage = passage_of(line.copies, from, to);
     volume += passage.times * moment.points.volume[p];
@@ -219,12 +230,14 @@ void SectionRecorder::count(const Line& line, const Moment& moment, SectionReadi
 /// The method counts what left the domain from so near to a line that it may have crossed it on the way out.
 void SectionRecorder::count_unseen(const Line& line, const Moment& moment, SectionReading& reading) const {
   if (x_.empty()) return;
-  std::vector<bool> here(volumes_.size());
-  for (std::size_t p = 0; p < moment.points.size(); ++p)
-    here[static_cast<std::size_t>(moment.points.id[p])] = moment.points.cell[0][p] >= 0;
-  for (std::size_t id = 0; id < moment.known; ++id) {
-    if (here[id] || x_[id] <= gone) continue;
-    if (distance_to(line.places, {x_[id], y_[id]}) <= moment.reach) reading.unseen += volumes_[id];
+  std::vector<bool> here(x_.size());
+  for (std::size_t p = 0; p < moment.points.size(); ++p) {
+    const auto [first, count] = parts_of(moment.points, p);
+    std::fill_n(here.begin() + static_cast<std::ptrdiff_t>(first), count, moment.points.cell[0][p] >= 0);
+  }
+  for (std::size_t part = 0; part < smallest_parts * moment.known; ++part) {
+    if (here[part] || x_[part] <= gone || distance_to(line.places, {x_[part], y_[part]}) > moment.reach) continue;
+    reading.unseen += volumes_[part / smallest_parts] / smallest_parts;
   }
 }
 
@@ -268,9 +281,10 @@ void SectionRecorder::keep(RunMemory& memory) const {
 }
 
 void SectionRecorder::restore(const RunMemory& memory) {
-  if (memory.section_x.size() != volumes_.size() || memory.section_y.size() != volumes_.size())
-    throw DataError({fmt::format("the checkpoint holds the places of {} points for sections, the scene has {}",
-                                 memory.section_x.size(), volumes_.size()),
+  const std::size_t parts = smallest_parts * volumes_.size();
+  if (memory.section_x.size() != parts || memory.section_y.size() != parts)
+    throw DataError({fmt::format("the checkpoint holds the places of {} parts of points for sections, the scene has {}",
+                                 memory.section_x.size(), parts),
                      "it is of another version of this program", "Run talus-solve again without --restart"});
   x_ = memory.section_x;
   y_ = memory.section_y;

@@ -96,7 +96,7 @@ class SectionRecorder : public TableRecorder<SectionReading> {
   std::vector<SectionReading> readings_;
   const Inflow& inflow_;
   std::size_t seeded_;         ///< points at the start
-  std::vector<double> x_, y_;  ///< places of the points at the last record, by id [cells]; x < -1: gone
+  std::vector<double> x_, y_;  ///< places at the last record, by id and smallest part [cells]; x < -1: gone
 };
 
 }  // namespace talus::solver

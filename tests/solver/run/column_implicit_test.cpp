@@ -270,8 +270,9 @@ TEST_P(ColumnImplicit, leave_the_deposit_of_explicit_steps) {
                              Slump{.law = FrictionLaw::velocity_weakening}, Slump{.mapping = Mapping::cartesian}}) {
     const auto [deposit, many] = slump.run(Integrator::explicit_, GetParam());
     const auto [by_columns, few] = slump.run(Integrator::column_implicit, GetParam());
-    // Twice what a change of cfl from 0.5 to 0.25 moves in explicit steps: 0.44 %, and 1.71 % on steps of level layers.
-    EXPECT_LT(share_elsewhere(by_columns, deposit), slump.mapping == Mapping::cartesian ? 0.035 : 0.01);
+    // Some twice what a change of cfl from 0.5 to 0.25 moves in explicit steps, whose points are split at other times:
+    // 0.84 %, and 1.71 % on steps of level layers.
+    EXPECT_LT(share_elsewhere(by_columns, deposit), slump.mapping == Mapping::cartesian ? 0.035 : 0.02);
     EXPECT_LT(2.5 * static_cast<double>(few), static_cast<double>(many));
   }
 }

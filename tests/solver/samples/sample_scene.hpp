@@ -79,7 +79,7 @@ inline Domain domain_of(const SampleScene& scene) {
 /// A material point in numbers of its terrain: place on the terrain's own axes, elevation, height above the ground [m],
 /// speed [m/s], upward velocity [m/s], volume [m3].
 struct PointSeen {
-  int id;
+  int id, part, parts;  ///< seed, first of its smallest parts (of all seeds), and how many of them it holds
   double x, y, z, height, speed, upward, volume;
 };
 
@@ -107,9 +107,11 @@ class SampleRun {
       const double bed =
           ground.datum + terrain_at(scene_.grid, ground, s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
       const double speed = std::hypot(s.velocity[0][p], s.velocity[1][p], s.velocity[2][p]);
-      seen.push_back({s.id[p], x, y, places[p][2], places[p][2] - bed, speed, s.velocity[2][p], s.volume[p]});
+      const PartRange range(s.piece[p]);
+      seen.push_back({s.id[p], smallest_parts * s.id[p] + range.first, range.count, x, y, places[p][2],
+                      places[p][2] - bed, speed, s.velocity[2][p], s.volume[p]});
     }
-    std::sort(seen.begin(), seen.end(), [](const PointSeen& a, const PointSeen& b) { return a.id < b.id; });
+    std::sort(seen.begin(), seen.end(), [](const PointSeen& a, const PointSeen& b) { return a.part < b.part; });
     return seen;
   }
   /// The vertical thickness [m] and its largest so far, [rows * columns].

@@ -34,6 +34,7 @@ constexpr ParticleNeeds everything{.affine_transfer = true,
                                    .remapped_velocity = true,
                                    .accelerations = true,
                                    .loads = true,
+                                   .spreads = true,
                                    .several_materials = true,
                                    .softening = true};
 constexpr ParticleNeeds nothing_more{};
