@@ -58,7 +58,8 @@ struct BedRaster {
   /// Declares the keys with defaults, help and what they need; messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place) {
     v.one_of("number", number, {bed_numbers.begin(), bed_numbers.end()},
-             "the key of [solve.base] that it takes the place of");
+             "the key of [solve.base] that it takes the place of; friction_coefficient: mu, whose arctangent is the "
+             "angle of laws that have one");
     v.path("file", file, "raster of it; no data: the number in [solve.base]");
     need(v, !file.empty(), place + ": file is not given", "there is nothing to read", "Name a raster");
   }

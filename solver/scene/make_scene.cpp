@@ -7,6 +7,8 @@
 #include "solver/scene/tables.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -68,6 +70,11 @@ void check_release_names(const Scene& scene, std::vector<Fault>& faults) {
   }
 }
 
+/// Whether a raster holds mu for a law that takes its angle instead.
+bool is_tangent(const BaseOptions& base, std::string_view raster) {
+  return raster == "friction_coefficient" && !base.uses(raster) && base.uses("friction_angle_deg");
+}
+
 /// The bed where domain.vdb has rasters of it: their values, the recipe's elsewhere.
 std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& options) {
   std::vector<Bed<double>> bed;
@@ -79,7 +86,7 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
 /// Refuses rasters that the law does not look at, which are a mistake in the recipe.
 void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fault>& faults) {
   for (const auto& [name, raster] : domain.bed) {
-    if (options.base.uses(name)) continue;
+    if (options.base.uses(name) || is_tangent(options.base, name)) continue;
     faults.push_back({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name),
                       "the raster would have no effect",
                       "Name the law that does, or leave the raster out and run talus-preprocess again"});
@@ -149,13 +156,21 @@ void lay_sides(ParticleState& points, std::size_t p, const GridShape& shape, con
 void each_bed(const Domain& domain, const SolveOptions& options,
               const std::function<void(const BaseFriction<double>&)>& visit) {
   SolveOptions here = options;
-  std::vector<double*> numbers;
-  for (const auto& [name, raster] : domain.bed) numbers.push_back(here.base.named(name));
+  struct Number {
+    double* value;
+    bool tangent;  ///< of an angle in degrees
+  };
+  std::vector<Number> numbers;
+  for (const auto& [name, raster] : domain.bed) {
+    const bool tangent = is_tangent(options.base, name);
+    numbers.push_back({here.base.named(tangent ? "friction_angle_deg" : name), tangent});
+  }
   for (std::size_t column = 0; column < domain.grid.count(); ++column) {
     here.base = options.base;
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       const double value = domain.bed[n].second.values[column];
-      if (numbers[n] && std::isfinite(value)) *numbers[n] = value;
+      const auto [number, tangent] = numbers[n];
+      if (number && std::isfinite(value)) *number = tangent ? std::atan(value) * 180 / std::numbers::pi : value;
     }
     visit(make_base_friction<double>(here));
   }

@@ -112,6 +112,28 @@ TEST_P(FreeFall, is_that_of_implicit_steps) {
   expect_free_fall<float, Gimp>(o, GetParam(), 1e-5);
 }
 
+TEST(MakeScene, a_raster_of_mu_gives_the_angle_of_a_law_that_has_one) {
+  Domain d = filled(ground(12, 12, 10, 5, flat), {40, 60, 40, 60, 0, 5});
+  Raster mu{d.grid, std::vector<double>(d.grid.count(), 0.3)};
+  mu.at(2, 3) = std::nan("");  // the recipe's angle holds there
+  d.bed.emplace_back("friction_coefficient", mu);
+  SolveOptions o;
+  o.base.friction_angle = std::atan(0.2) / degree;
+  const auto frictions = [&](FrictionLaw law) {
+    o.base.law = law;
+    std::vector<double> all;
+    for (const Bed<double>& bed : make_scene(d, o).bed) all.push_back(bed.numbers[0]);
+    return all;
+  };
+  for (const FrictionLaw law : {FrictionLaw::coulomb, FrictionLaw::voellmy}) {
+    const std::vector<double> found = frictions(law);
+    EXPECT_NEAR(found[d.grid.index(2, 3)] / found[0], 0.2 / 0.3, 1e-12);
+  }
+  EXPECT_NO_THROW(frictions(FrictionLaw::samosat));
+  EXPECT_TRUE(test::holds(test::fault_of<RecipeError>([&] { frictions(FrictionLaw::none); }),
+                          {"friction_coefficient", "does not use it"}));
+}
+
 TEST(PlaceInCells, is_the_nearest_node_and_what_is_left) {
   int cell = 0;
   double offset = 0;
