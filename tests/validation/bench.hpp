@@ -42,8 +42,7 @@ inline constexpr double front_thickness = 2 * 1.15e-3;
 /// `breadth`: of the deposit at x [m]. Single grains roll on.
 double front_of(const Points& points, double cell, const std::function<double(double)>& breadth);
 
-/// How far along x 99 % of the volume got [m]. Points that left do not
-/// count; there must be one.
+/// How far along x 99 % of the volume got [m]. Points that left do not count; there must be one.
 double reach_of(const Points& points);
 
 /// The cost of a run: steps, and Newton's and linear iterations where there are any, else 0.

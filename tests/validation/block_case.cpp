@@ -156,7 +156,7 @@ Outcome shaken(Bench& bench, const ShakenPlane& plane, const Shake& shake, const
 /// Way of the block down the plane [m]; NaN where there is no result.
 double way_down(const Outcome& o, const ShakenPlane& plane) {
   if (!o.ok()) return nothing;
-  return way_between(o.first(), o.last()) / std::cos(ShakenPlane::radians(plane.angle));
+  return (centre_of(o.last())[0] - centre_of(o.first())[0]) / std::cos(ShakenPlane::radians(plane.angle));
 }
 
 }  // namespace

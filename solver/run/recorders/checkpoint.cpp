@@ -17,6 +17,7 @@
 #include "common/run/sealed_file.hpp"
 #include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/state/parts.hpp"
 
 namespace talus::solver {
 namespace {
@@ -196,14 +197,13 @@ class Fits {
     }
   }
   /// Refuses points that hold the same part of one seeded point.
-  void all_different(const std::vector<int>& ids, const std::vector<int>& pieces, std::size_t count) const {
+  void all_different(const ParticleState& points, std::size_t count) const {
     std::vector<bool> taken(smallest_parts * count);
-    for (std::size_t p = 0; p < ids.size(); ++p) {
-      const PartRange range(pieces[p]);
-      for (int part = range.first; part < range.first + range.count; ++part) {
-        const auto place = smallest_parts * static_cast<std::size_t>(ids[p]) + static_cast<std::size_t>(part);
-        if (taken[place]) refuse(fmt::format("two points have the id {} and share a piece of it", ids[p]));
-        taken[place] = true;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const Parts parts = parts_of(points, p);
+      for (std::size_t part = parts.first; part < parts.first + parts.count; ++part) {
+        if (taken[part]) refuse(fmt::format("two points have the id {} and share a piece of it", points.id[p]));
+        taken[part] = true;
       }
     }
   }
@@ -251,7 +251,7 @@ void check_points(const Fits& fits, const SolverState& state, std::int64_t pulse
   fits.within("volume", points.volume, tiny, 1e30);
   fits.within("id", points.id, 0, static_cast<double>(seeded) - 1);
   fits.within("piece", points.piece, 1, 2 * smallest_parts - 1);
-  fits.all_different(points.id, points.piece, seeded);
+  fits.all_different(points, seeded);
   fits.within("release", points.release, 0, static_cast<double>(scene.release_names.size()) - 1);
   fits.within("load", points.load, -1, static_cast<double>(scene.load_volumes.size()) - 1);
   fits.within("material", points.material, 0,

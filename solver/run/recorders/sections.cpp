@@ -10,6 +10,7 @@
 #include "common/map/raster.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/state/parts.hpp"
 
 namespace talus::solver {
 
@@ -108,16 +109,6 @@ Passage passage_of(const std::vector<std::vector<std::array<double, 2>>>& copies
 
 std::array<double, 2> place_of(const ParticleState& points, std::size_t p) {
   return {points.cell[0][p] + points.offset[0][p], points.cell[1][p] + points.offset[1][p]};
-}
-
-/// The smallest parts of all points, in the order of the points' ids, that point p holds: the first, and how many.
-struct Parts {
-  std::size_t first, count;
-};
-Parts parts_of(const ParticleState& points, std::size_t p) {
-  const PartRange range(points.piece[p]);
-  return {smallest_parts * static_cast<std::size_t>(points.id[p]) + static_cast<std::size_t>(range.first),
-          static_cast<std::size_t>(range.count)};
 }
 
 }  // namespace

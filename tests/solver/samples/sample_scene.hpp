@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "data_samples/terrains.hpp"
+#include "solver/state/parts.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -107,8 +108,8 @@ class SampleRun {
       const double bed =
           ground.datum + terrain_at(scene_.grid, ground, s.cell[0][p] + s.offset[0][p], s.cell[1][p] + s.offset[1][p]);
       const double speed = std::hypot(s.velocity[0][p], s.velocity[1][p], s.velocity[2][p]);
-      const PartRange range(s.piece[p]);
-      seen.push_back({s.id[p], smallest_parts * s.id[p] + range.first, range.count, x, y, places[p][2],
+      const Parts parts = parts_of(s, p);
+      seen.push_back({s.id[p], static_cast<int>(parts.first), static_cast<int>(parts.count), x, y, places[p][2],
                       places[p][2] - bed, speed, s.velocity[2][p], s.volume[p]});
     }
     std::sort(seen.begin(), seen.end(), [](const PointSeen& a, const PointSeen& b) { return a.part < b.part; });

@@ -53,19 +53,14 @@ void expect_fields(const ParticleState& after, const ParticleState& before, Kept
 }
 
 /// On every device, in both precisions.
-class ParticlesOn : public solver::testing::InEachPlace {
+class ParticlesOn : public solver::testing::OnEachDevice {
  protected:
   template <class Body>
-  void on_device(Body&& body) {
-    if (GetParam() == On::cpu) {
-      body(float{}, CpuDevice::make());
-      body(double{}, CpuDevice::make());
-#if TALUS_FOR_GPU
-    } else {
-      body(float{}, GpuDevice::make());
-      body(double{}, GpuDevice::make());
-#endif
-    }
+  void in_both_precisions(Body&& body) {
+    on_device([&](const auto& device) {
+      body(float{}, device);
+      body(double{}, device);
+    });
   }
 };
 
@@ -106,7 +101,7 @@ TEST(ParticleTable, places_are_what_a_kernel_moves_of_a_position) {
 }
 
 TEST_P(ParticlesOn, every_field_comes_back) {
-  on_device([](auto real, auto device) {
+  in_both_precisions([](auto real, auto device) {
     using Real = decltype(real);
     using Device = decltype(device);
     const ParticleState state = sample();
@@ -121,7 +116,7 @@ TEST_P(ParticlesOn, every_field_comes_back) {
 }
 
 TEST_P(ParticlesOn, fields_without_need_take_no_memory_and_read_as_initial) {
-  on_device([](auto real, auto device) {
+  in_both_precisions([](auto real, auto device) {
     using Real = decltype(real);
     using Device = decltype(device);
     const ParticleState state = sample();
@@ -144,7 +139,7 @@ TEST_P(ParticlesOn, fields_without_need_take_no_memory_and_read_as_initial) {
 }
 
 TEST_P(ParticlesOn, sorting_takes_every_field_along_and_drops_the_last) {
-  on_device([](auto real, auto device) {
+  in_both_precisions([](auto real, auto device) {
     using Real = decltype(real);
     using Device = decltype(device);
     const ParticleState state = sample();

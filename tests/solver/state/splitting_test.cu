@@ -69,7 +69,7 @@ std::vector<std::uint64_t> keys_of(const ParticleState& s) {
 
 constexpr ParticleNeeds needs{.affine_transfer = true, .spreads = true};
 
-class SplittingOn : public solver::testing::InEachPlace {
+class SplittingOn : public solver::testing::OnEachDevice {
  protected:
   /// What becomes of points, in either precision.
   template <class Check>
@@ -85,15 +85,10 @@ class SplittingOn : public solver::testing::InEachPlace {
       while (points.split(grid.view(), keys.data()));
       check(points.download(), points.count());
     };
-    if (GetParam() == On::cpu) {
-      run(float{}, CpuDevice::make());
-      run(double{}, CpuDevice::make());
-#if TALUS_FOR_GPU
-    } else {
-      run(float{}, GpuDevice::make());
-      run(double{}, GpuDevice::make());
-#endif
-    }
+    on_device([&](const auto& device) {
+      run(float{}, device);
+      run(double{}, device);
+    });
   }
 };
 
