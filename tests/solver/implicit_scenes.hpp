@@ -36,7 +36,7 @@ inline int steps_to(Solver& solver, double time, StepStats* last = nullptr) {
 
 /// validation.md A2, two cells deep: a cantilever of 10 x 1 x 1 m, E = 1 GPa, held at x = 0, its end pulled down.
 struct Cantilever {
-  Domain domain = filled(ground(28, 10, 0.5, 0.5, flat, -1.75, -1.75), {0, 10, 0, 1, 10, 11});
+  Domain domain = filled(ground(28, 10, 0.5, 0.5, flat, {-1.75, -1.75}), {0, 10, 0, 1, 10, 11});
   SolveOptions options = stepping_by(Integrator::quasi_static);
   Cantilever(ShapeKind shape, double k) {
     options.mapping = Mapping::cartesian;

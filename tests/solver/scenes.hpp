@@ -23,11 +23,15 @@ inline double sliding_acceleration(double slope, double friction) {
   return 9.81 * (std::sin(slope * degree) - std::tan(friction * degree) * std::cos(slope * degree));
 }
 
-/// A flat or tilted ground under columns x rows cells from a south-western corner on.
+struct Corner {
+  double x = 0, y = 0;  // [m]
+};
+
+/// A flat or tilted ground under columns x rows cells from the south-western corner {x, y} on.
 inline Domain ground(int columns, int rows, double cell, double layer_height,
-                     const std::function<double(double, double)>& elevation, double west = 0, double south = 0) {
+                     const std::function<double(double, double)>& elevation, Corner corner = {}) {
   Domain d;
-  d.grid = {columns, rows, west, south, cell, ""};
+  d.grid = {columns, rows, corner.x, corner.y, cell, ""};
   d.layer_height = layer_height;
   d.terrain = d.before = d.release_thickness = {d.grid, std::vector<double>(d.grid.count(), 0.0)};
   for (int j = 0; j < rows; ++j)

@@ -173,7 +173,7 @@ ObstacleOptions wall_at_20(const std::filesystem::path& file, double further) {
     return std::max({face - x, x - face - 2, 2 - y, y - 22, -2 - z, z - 10});
   };
   write_level_sets(file, {{"wall", {face, 2, -2}, {face + 2, 22, 10}, distance}}, 0.25);
-  return {"wall", file, "", 0};
+  return {"wall", file, "", nullptr};
 }
 
 SolveOptions gliding(const std::filesystem::path& file, Integrator integrator, double further = 0) {
@@ -274,7 +274,7 @@ constexpr double beam_length = 4, beam_bottom = 6;  // [m]
 
 /// A beam of 4 x 1 m in plane strain, held at x = 0 (E = 1 MPa, nu = 0.3, 1,050 kg/m3, 9.8 m/s2), on cells of 0.25 m.
 struct SoftBeam {
-  Domain domain = filled(ground(26, 9, 0.25, 0.25, flat, -0.875, -0.875),  // nodes at the planes of the walls
+  Domain domain = filled(ground(26, 9, 0.25, 0.25, flat, {-0.875, -0.875}),  // nodes at the planes of the walls
                          {0, beam_length, 0, 0.5, beam_bottom, beam_bottom + 1});
   SolveOptions options;
   explicit SoftBeam(MaterialModel model) {
@@ -326,7 +326,7 @@ TEST_P(SoftCantilever, of_neo_hookean_material_holds_and_turns_back_where_finite
 
 TEST_P(SoftCantilever, of_neo_hookean_material_falls_as_far_in_newmarks_steps) {
   constexpr double time = 0.5;
-  double drop[2];
+  double drop[2] = {};
   for (const auto integrator : {Integrator::explicit_, Integrator::newmark}) {
     SoftBeam beam(MaterialModel::neo_hookean);
     beam.options.integrator = integrator;

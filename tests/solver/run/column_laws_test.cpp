@@ -222,7 +222,7 @@ TALUS_IN_EACH_PLACE(BinghamSlump);
 /// so that h^2 = (2 tau_y / (rho g)) (x_f - x). The area A behind the front is sqrt(2 tau_y / (rho g)) (2 / 3) x_f^1.5.
 TEST_P(BinghamSlump, rests_in_the_shape_that_its_yield_stress_holds) {
   constexpr double cell = 0.25, width = 4, height = 1, density = 1500, yield = 600;
-  const Domain d = filled(ground(48, 8, cell, 0.125, flat, -0.875, -0.875), {0, width, 0, cell, 0, height});
+  const Domain d = filled(ground(48, 8, cell, 0.125, flat, {-0.875, -0.875}), {0, width, 0, cell, 0, height});
   SolveOptions o;
   o.material.model = MaterialModel::herschel_bulkley;
   o.material.density = density;

@@ -262,8 +262,8 @@ TEST_P(HardCases, a_slab_that_has_settled_does_not_creep) {
 TEST_P(HardCases, far_coordinates_and_other_sizes_change_nothing) {  // C10
   Integrator integrator = Integrator::explicit_;
   const auto slide = [&](double west, double south, double scale) {
-    Domain d = ground(
-        40, 20, scale, 0.5 * scale, [&](double x, double) { return scale * 20 - 0.5 * (x - west); }, west, south);
+    Domain d = ground(40, 20, scale, 0.5 * scale, [&](double x, double) { return scale * 20 - 0.5 * (x - west); },
+                      {west, south});
     fill(d, {6 * scale, 12 * scale, 6 * scale, 12 * scale, 0, 2 * scale});
     for (std::size_t p = 0; p < d.points.size(); ++p) {
       d.points.x[p] += west;

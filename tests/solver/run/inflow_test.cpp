@@ -24,9 +24,8 @@ struct Flume {
   SolveOptions options;
 
   explicit Flume(double slope = 0.3, int columns = 60, double layer = 0.5) : fall(slope) {
-    domain = ground(
-        columns, 7, cell, layer, [this](double x, double) { return 200 - fall * x; }, -cell / 2,
-        -cell / 2);  // nodes at the walls
+    domain = ground(columns, 7, cell, layer, [this](double x, double) { return 200 - fall * x; },
+                    {-cell / 2, -cell / 2});  // nodes at the walls
     domain.release_names.clear();
     options.material.density = density;
     options.material.youngs_modulus = 2e6;
@@ -263,10 +262,9 @@ constexpr double gauge_places[] = {-4, 0, 4};
 RunHistory break_dam(On on, int layers, int wide = 1) {
   const double layer = dam_depth / layers, cell = 2 * layer, reservoir = 20, west = 20, east = 34;
   const double width = wide * cell;
-  const Domain d =
-      filled(ground(static_cast<int>((west + east) / cell), wide + 8, cell, layer, flat, -west - 0.5 * cell,
-                    -3.5 * cell),  // nodes at the walls
-             {-reservoir + 4 * cell, 0, 0, width, 0, dam_depth});
+  const Domain d = filled(ground(static_cast<int>((west + east) / cell), wide + 8, cell, layer, flat,
+                                 {-west - 0.5 * cell, -3.5 * cell}),  // nodes at the walls
+                          {-reservoir + 4 * cell, 0, 0, width, 0, dam_depth});
   SolveOptions o = stepping_by(Integrator::explicit_);
   o.material.model = MaterialModel::herschel_bulkley;
   o.material.youngs_modulus = 1e6;
