@@ -34,27 +34,47 @@ TALUS_HD bool lies_on_bed(Number rise, Number press, Number depth) {
   return rise <= Number(0) || rise * rise < press * depth;
 }
 
-/// The number n of a column or row, seen in the walls on nodes `low` and `high` where it lies behind one of them; n
-/// where they leave no room between them.
-TALUS_HD int mirrored(int n, int low, int high) {
-  while (low < high && (n < low || n > high)) n = n < low ? 2 * low - n : 2 * high - n;
-  return n;
+/// The number n of a column or row, seen in the walls of a room where it lies behind one of them; n where they leave no
+/// node between them.
+TALUS_HD int mirrored(int n, const WallNodes::Room& room) {
+  const auto first = static_cast<int>(ceil(room.first)), last = static_cast<int>(floor(room.last));
+  if (first > last || (n >= first && n <= last)) return n;
+  int seen = n < first ? static_cast<int>(floor(2 * room.first - n + 0.5)) : n;
+  if (seen > last) seen = static_cast<int>(ceil(2 * room.last - seen - 0.5));
+  return seen < first ? first : seen > last ? last : seen;
 }
 
-/// The share of the area of column (i, j) that lies before the walls on nodes: half on a wall, a quarter in a corner.
+/// The share of a node's function that lies before a wall `inside` cells from it: half where the node lies on the wall,
+/// which is an edge of all functions; else the integral of the spline. Points come a little way behind walls, so that
+/// it is never nothing.
+TALUS_HD double share_before_wall(double inside) {
+  constexpr double least = 0.01;
+  if (inside == floor(inside)) return inside > 0 ? 1 : inside < 0 ? least : 0.5;
+  const double away = fabs(inside), rest = away < 1.5 ? 1.5 - away : 0;
+  const double larger = away <= 0.5 ? 0.5 + 0.75 * away - away * away * away / 3 : 1 - rest * rest * rest / 6;
+  const double share = inside > 0 ? larger : 1 - larger;
+  return share > least ? share : least;
+}
+
+/// The share of node n of one direction that lies in a room between walls.
+TALUS_HD double share_of_room(int n, const WallNodes::Room& room) {
+  const double after = n - room.first, before = room.last - n;
+  if (after >= 1.5 && before >= 1.5) return 1;
+  const double first = share_before_wall(after), last = share_before_wall(before);
+  return first + last > 1.01 ? first + last - 1 : 0.01;
+}
+
+/// The share of the area of column (i, j) that lies before the walls: half on a wall, a quarter in a corner.
 template <class Real>
 TALUS_HD Real share_before_walls(const GridView<Real>& grid, int i, int j) {
-  const WallNodes& walls = grid.walls;
-  return (i == walls.west || i == walls.east ? Real(0.5) : Real(1)) *
-         (j == walls.south || j == walls.north ? Real(0.5) : Real(1));
+  return static_cast<Real>(share_of_room(i, grid.walls.x) * share_of_room(j, grid.walls.y));
 }
 
 /// The mass of the column that is dx, dy columns from column (i, j), 0 where there is none [kg]. Walls are mirrors: the
 /// mass goes on behind them, and that of a column on a wall is what a whole one would hold.
 template <class Real, class Number>
 TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int i, int j, int dx, int dy) {
-  const int a = mirrored(i + dx, grid.walls.west, grid.walls.east),
-            b = mirrored(j + dy, grid.walls.south, grid.walls.north);
+  const int a = mirrored(i + dx, grid.walls.x), b = mirrored(j + dy, grid.walls.y);
   if (a < 0 || b < 0 || a >= grid.columns || b >= grid.rows || grid.slot(a, b).offset < 0) return Number(0);
   return mass[grid.column(a, b)] / static_cast<Number>(share_before_walls(grid, a, b));
 }

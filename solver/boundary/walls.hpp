@@ -41,14 +41,24 @@ struct Walls {
   Wall<Real> list[most_walls];
 };
 
-/// The nodes at which quadratic functions meet the walls as edges: the innermost upright fixed ones that lie on nodes.
+/// The upright walls that do not move: the room between them, and the nodes at which quadratic functions meet them as
+/// edges.
 template <class Real>
 WallNodes wall_nodes(const Walls<Real>& walls) {
   WallNodes nodes;
   for (int w = 0; w < walls.count; ++w) {
     const Wall<Real>& wall = walls.list[w];
     const Real node = std::floor(wall.position + Real(0.5));
-    if (wall.axis == 2 || wall.speed != Real(0) || std::fabs(wall.position - node) > Real(1e-4)) continue;
+    if (wall.axis == 2 || wall.speed != Real(0)) continue;
+    WallNodes::Room& room = wall.axis == 0 ? nodes.x : nodes.y;
+    const bool on_nodes = std::fabs(wall.position - node) <= Real(1e-4);
+    const auto place = static_cast<double>(on_nodes ? node : wall.position);
+    if (wall.side > 0) {
+      room.first = std::max(room.first, place);
+    } else {
+      room.last = std::min(room.last, place);
+    }
+    if (!on_nodes) continue;
     int& first = wall.axis == 0 ? nodes.west : nodes.south;
     int& last = wall.axis == 0 ? nodes.east : nodes.north;
     if (wall.side > 0) {

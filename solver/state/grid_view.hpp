@@ -58,10 +58,14 @@ struct HomeCell {
   }
 };
 
-/// The nodes on which upright walls lie: material is between them.
+/// Where the innermost upright walls stand that do not move: material is between them.
 struct WallNodes {
   static constexpr int far = 1 << 30;
-  int west = -far, east = far, south = -far, north = far;
+  int west = -far, east = far, south = -far, north = far;  ///< the nodes on which they lie
+  /// The room between them, whether they lie on nodes or not [cells from node 0].
+  struct Room {
+    double first = -far, last = far;
+  } x, y;
 };
 
 /// The background grid as kernels see it.

@@ -245,8 +245,7 @@ TEST(Cover, is_half_a_cell_of_each_column_on_a_wall_however_narrow_the_strip) {
   const SmallGrid grid;
   for (int wide = 1; wide <= 5; ++wide) {
     GridView<double> view = grid.view();
-    view.walls.west = 1;
-    view.walls.east = 1 + wide;
+    view.walls.x = {1, 1.0 + wide};
     std::vector<double> mass(64);
     for (std::size_t n = 0; n < 64; ++n) {
       const int i = static_cast<int>(n % 8);
@@ -258,11 +257,37 @@ TEST(Cover, is_half_a_cell_of_each_column_on_a_wall_however_narrow_the_strip) {
   }
 }
 
+/// Even matter between walls anywhere: each column's share of the bed is that of the matter which its node holds, and
+/// at least a hundredth.
+TEST(Cover, is_the_width_of_a_strip_wherever_its_walls_stand) {
+  const SmallGrid grid;
+  for (const double wide : {0.75, 1.0, 2.0, 4.0}) {
+    for (const double first : {1.25, 1.5, 1.75}) {
+      GridView<double> view = grid.view();
+      view.walls.x = {first, first + wide};
+      const std::vector<double> line = masses_over_line(-first, wide, [](double) { return 1.0; });
+      std::vector<double> mass(64);
+      for (std::size_t n = 0; n < 64; ++n) mass[n] = line[n % 8];
+      double covered = 0;
+      for (int i = 0; i < 8; ++i) {
+        if (line[static_cast<std::size_t>(i)] > 0) covered += bed_under(view, mass.data(), i, 4).area;
+      }
+      EXPECT_NEAR(covered / (wide * grid.spacing * grid.spacing), 1, 0.02 / wide) << wide << " wide from " << first;
+    }
+  }
+}
+
 TEST(Cover, mirrors_nothing_in_walls_that_leave_no_room) {
-  EXPECT_EQ(mirrored(-1, 1, 2), 1) << "behind one, then the other";
-  EXPECT_EQ(mirrored(4, 1, 3), 2);
-  EXPECT_EQ(mirrored(4, 2, 2), 4);
-  EXPECT_EQ(mirrored(4, 5, 3), 4);
+  EXPECT_EQ(mirrored(-1, {1, 2}), 1) << "behind one, then the other";
+  EXPECT_EQ(mirrored(4, {1, 3}), 2);
+  EXPECT_EQ(mirrored(4, {2, 2}), 2);
+  EXPECT_EQ(mirrored(4, {5, 3}), 4);
+}
+
+TEST(Cover, mirrors_columns_in_walls_between_nodes) {
+  EXPECT_EQ(mirrored(2, {2.25, 9}), 3);
+  EXPECT_EQ(mirrored(1, {2.75, 9}), 5);
+  EXPECT_EQ(mirrored(7, {0, 5.5}), 4);
 }
 
 }  // namespace

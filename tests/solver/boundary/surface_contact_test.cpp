@@ -13,7 +13,7 @@
 namespace talus::solver::testing {
 namespace {
 
-TEST(WallNodes, are_the_innermost_upright_walls_that_stand_still_on_nodes) {
+TEST(WallNodes, are_the_innermost_upright_walls_that_stand_still) {
   Walls<double> walls;
   const auto add = [&](int axis, double position, int side, double speed) {
     Wall<double>& w = walls.list[walls.count++];
@@ -34,6 +34,10 @@ TEST(WallNodes, are_the_innermost_upright_walls_that_stand_still_on_nodes) {
   EXPECT_EQ(nodes.east, WallNodes::far);
   EXPECT_EQ(nodes.south, -WallNodes::far);
   EXPECT_EQ(nodes.north, 18);
+  EXPECT_EQ(nodes.x.first, 5);
+  EXPECT_EQ(nodes.x.last, 9.5);
+  EXPECT_EQ(nodes.y.first, -WallNodes::far);
+  EXPECT_EQ(nodes.y.last, 18);
 }
 
 constexpr WallFrame frame{{100, 200, 50}, {2, 4, 0.5}};
