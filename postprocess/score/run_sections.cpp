@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/map/statistics.hpp"
+#include "common/run/mobility.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "postprocess/fields/fields.hpp"
@@ -204,17 +205,24 @@ void add_line(const Line& line, Sheet& sheet) {
 }  // namespace
 
 void warn_of_end(const Run& run) {
-  constexpr double at_rest = 0.01;  // of the largest kinetic energy
-  const HistoryColumn* kinetic = run.history.find("kinetic_J");
-  if (kinetic == nullptr || kinetic->values.empty() || run.summary.stop_reason != "end of the simulated time") return;
-  const double peak = *std::max_element(kinetic->values.begin(), kinetic->values.end()), last = kinetic->values.back();
-  if (!(last > at_rest * peak)) return;
+  constexpr double at_rest = 0.01;  // of the volume
+  const auto last = [&](const char* name) {
+    const HistoryColumn* column = run.history.find(name);
+    return column == nullptr || column->values.empty() ? nan : column->values.back();
+  };
+  const double moving = last("moving_volume_m3"), share = moving / last("volume_m3");
+  if (!(share > at_rest)) return;
   warn("ended-before-rest",
-       fmt::format("the run ended before rest, at {:.3g} s with {:.3g} % of its largest kinetic energy: the deposit is "
-                   "no final one. Give a larger end_time_s in [solve], and stop_kinetic_fraction = 0.001, which ends "
-                   "the run at rest",
-                   run.summary.time_end, 100 * last / peak),
-       {{"kinetic_energy_share", last / peak, "1"}, {"time", run.summary.time_end, "s"}});
+       fmt::format(
+           "the run ended before rest: at {:.3g} s {:.4g} m3, {:.3g} % of the mass, still moved faster than {:g} "
+           "m/s, at {:.3g} m/s on average ({}). The deposit is no final one. Give a larger end_time_s, or a "
+           "smaller stop_kinetic_fraction, in [solve]",
+           run.summary.time_end, moving, 100 * share, moving_faster_than, last("moving_speed_m_s"),
+           run.summary.stop_reason),
+       {{"moving_share", share, "1"},
+        {"moving_volume", moving, "m3"},
+        {"moving_speed", last("moving_speed_m_s"), "m s-1"},
+        {"time", run.summary.time_end, "s"}});
 }
 
 void add_run(const Scored& scored, Sheet& sheet) {

@@ -55,7 +55,7 @@ struct Score {
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg,
                  const Hazard* hazard = nullptr);
 
-/// Warns of a run that ended with its simulated time, and not at rest.
+/// Warns of a run that ended while more than a hundredth of its volume moved, with what still moves.
 void warn_of_end(const Run& run);
 
 /// One flat object: key -> value; `not_scored` says why a value is absent; `findings` is an array of objects.

@@ -153,6 +153,21 @@ TEST(Score, has_the_findings_of_all_stages) {
                     {"Refused and accepted in [preprocess], \"swapped-surveys\": what rose"}));
 }
 
+TEST(Score, warns_of_a_run_that_ended_while_more_than_a_hundredth_of_it_moved) {
+  auto run = small_run();
+  const auto found = [&](double moving) {
+    run.history.columns = {{"volume_m3", "m3", "", "", {24000, 24000}},
+                           {"moving_volume_m3", "m3", "", "", {20000, moving}},
+                           {"moving_speed_m_s", "m s-1", "", "", {30, 2.5}}};
+    return test::findings_of([&] { warn_of_end(run); });
+  };
+  EXPECT_TRUE(found(239).empty());
+  const std::vector<Finding> ended = found(480);
+  ASSERT_EQ(ended.size(), 1u);
+  EXPECT_EQ(ended[0].name, "ended-before-rest");
+  EXPECT_TRUE(holds(ended[0].message, {"480 m3", "2 %", "2.5 m/s", "end time"}));
+}
+
 TEST(Score, measures_residuals_by_the_surveys_error_and_warns_where_it_hides_deposit) {
   auto survey = measured_survey();
   const auto json = json_of(small_run(), survey);
