@@ -181,7 +181,8 @@ struct CopyMarked {
 };
 
 /// One thread: one point. A marked one and its copy become halves, whose middles lie a quarter of the side from its
-/// own.
+/// own, and at most half a cell: further away its velocity gradient says nothing, and would make energy of a side that
+/// grew in flight.
 template <class Real>
 struct Halve {
   GridView<Real> grid;
@@ -193,7 +194,8 @@ struct Halve {
     if (!places.marked(p)) return;
     const CellFrame<Real> frame(grid, points, p);
     Sides<Real> s = frame.sides_of(points, p);
-    const Vec3<Real> way = s.longer * Real(0.25);
+    const Real length = Real(sqrt(dot(s.longer, s.longer)));
+    const Vec3<Real> way = s.longer * (length > Real(2) ? Real(0.5) / length : Real(0.25));
     s.longer = s.longer * Real(0.5);
     const int copy = places[p];
     for (const int q : {p, copy}) {

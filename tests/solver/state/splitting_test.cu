@@ -113,6 +113,17 @@ TEST_P(SplittingOn, halves_a_point_along_its_longer_side_on_the_ground) {
   });
 }
 
+/// A side that grew in flight says nothing of where the mass is, nor does the velocity gradient so far away.
+TEST_P(SplittingOn, leaves_halves_within_half_a_cell_however_long_the_side) {
+  split(point(5, 40, 0.5), [](const ParticleState& s, int count) {
+    ASSERT_EQ(count, smallest_parts);
+    for (std::size_t p = 0; p < s.size(); ++p) {
+      EXPECT_LE(std::abs(place(s, 0, p) - 5), 1 + 1e-6);  // two halvings
+      EXPECT_LE(std::abs(s.velocity[0][p] - 1), 4 + 1e-5);
+    }
+  });
+}
+
 TEST_P(SplittingOn, leaves_what_is_no_longer_than_a_cell) {
   for (const double along : {0.5, 1.0})
     split(point(5, along, 0.5), [](const ParticleState& s, int count) {
