@@ -27,9 +27,11 @@ struct BudgetRow {
 };
 
 inline constexpr std::string_view survey_row = "survey";  ///< with as many members as there are draws
+inline constexpr std::string_view repeat_row = "repeat";  ///< of the run itself, but for its last digits
 
 /// All rows, in the order of members.
 inline constexpr BudgetRow budget_rows[] = {
+    {"repeat", BudgetKind::numerical, "last digits"},
     {"step", BudgetKind::numerical, "size of the steps"},
     {"modulus", BudgetKind::numerical, "stiffness"},
     {"integrator", BudgetKind::numerical, "kind of steps"},

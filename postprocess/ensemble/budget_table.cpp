@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "common/ensemble/counts.hpp"
+#include "common/stage/findings.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 #include "postprocess/survey/survey.hpp"
@@ -168,6 +169,18 @@ OrderedJson line_json(const BudgetTable& table, const BudgetLine& line) {
 
 BudgetTable budget_table(const Ensemble& ensemble, const MemberRows& rows, const Options& options) {
   return BudgetComparison(ensemble, rows, options).table();
+}
+
+void warn_of_chaos(const BudgetTable& table) {
+  constexpr double repeatable = 0.02;  // of the deposit
+  for (const BudgetLine& line : table.lines) {
+    if (line.row == nullptr || line.row->name != repeat_row || !(line.elsewhere > repeatable)) continue;
+    warn("chaotic-flow",
+         fmt::format("the flow is chaotic: in a run that differs in its last digits {:.2g} % of the deposit lies "
+                     "elsewhere. No finer steps tell more. Where single cells matter, read budget/deposit_spread.tif",
+                     100 * line.elsewhere),
+         {{"deposit_elsewhere", line.elsewhere, "1"}});
+  }
 }
 
 std::string budget_csv(const BudgetTable& table) {

@@ -49,6 +49,9 @@ struct BudgetTable {
 /// Compares the members of a budget with the recipe itself. Throws DataError where that failed or was not run.
 BudgetTable budget_table(const Ensemble& ensemble, const MemberRows& rows, const Options& options);
 
+/// Warns where other last digits move more than a fiftieth of the deposit.
+void warn_of_chaos(const BudgetTable& table);
+
 /// The table as comma-separated values, a row for each member.
 std::string budget_csv(const BudgetTable& table);
 

@@ -243,6 +243,7 @@ struct EnsembleResults {
 
   void write_budget() {
     const BudgetTable table = budget_table(ensemble, rows, options);
+    warn_of_chaos(table);
     write("budget.csv", budget_csv(table));
     add(write_spread_maps(made_folder("budget"), ensemble, options, table));
     write_page("ensemble.html", {}, &table);

@@ -18,8 +18,9 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-constexpr double step_factor = 0.5;   // of the row of steps, over the run's
-constexpr double modulus_factor = 2;  // of the row of the stiffness, over the run's
+constexpr double step_factor = 0.5;      // of the row of steps, over the run's
+constexpr double modulus_factor = 2;     // of the row of the stiffness, over the run's
+constexpr double nearly_one = 1 + 1e-6;  // times the stiffness, in the row of the last digits
 
 /// Numbers of the bed that are friction, as angles or coefficients.
 constexpr std::string_view friction_angles[] = {"friction_angle_deg", "stop_angle_deg", "steepest_angle_deg",
@@ -106,6 +107,9 @@ class Variations {
   void change_bed(Variation& one, const BedChange& change) const;
   void own(Variation& one, const std::string& name) const;
 
+  void stiffen(Variation& one, double factor) const;
+
+  void repeat(Variation& one, bool) const;
   void step(Variation& one, bool) const;
   void modulus(Variation& one, bool) const;
   void integrator(Variation& one, bool) const;
@@ -116,15 +120,11 @@ class Variations {
   void weakening(Variation& one, bool fast) const;
   void strength(Variation& one, bool more) const;
   static constexpr std::pair<std::string_view, void (Variations::*)(Variation&, bool) const> rows_[] = {
-      {"step", &Variations::step},
-      {"modulus", &Variations::modulus},
-      {"integrator", &Variations::integrator},
-      {"transfer", &Variations::transfer},
-      {"cells", &Variations::cells},
-      {"friction", &Variations::friction},
-      {"drag", &Variations::drag},
-      {"weakening", &Variations::weakening},
-      {"strength", &Variations::strength}};
+      {"step", &Variations::step},           {"repeat", &Variations::repeat},
+      {"modulus", &Variations::modulus},     {"integrator", &Variations::integrator},
+      {"transfer", &Variations::transfer},   {"cells", &Variations::cells},
+      {"friction", &Variations::friction},   {"drag", &Variations::drag},
+      {"weakening", &Variations::weakening}, {"strength", &Variations::strength}};
 
   const Domain& domain_;
   const SolveOptions& base_;
@@ -188,16 +188,27 @@ void Variations::step(Variation& one, bool) const {
   one.words = fmt::format("steps {:g} times as long", step_factor);
 }
 
-void Variations::modulus(Variation& one, bool) const {
-  if (!base_.material.stiffness_is_free()) return;
+/// Young's modulus times a factor, of all materials whose stiffness moves the flow by little.
+void Variations::stiffen(Variation& one, double factor) const {
   const auto stiffen = [&](MaterialOptions& material, const std::string& table) {
-    material.youngs_modulus *= modulus_factor;
+    material.youngs_modulus *= factor;
     one.values.push_back(set_to(table + ".youngs_modulus_Pa", material.youngs_modulus));
   };
   stiffen(one.options.material, "solve.material");
   for (std::size_t n = 0; n < one.options.parts.size(); ++n)
     if (one.options.parts[n].material.stiffness_is_free())
       stiffen(one.options.parts[n].material, fmt::format("solve.part[{}].material", n));
+}
+
+/// A run of which no number differs by more than a measurement could tell: what it moves, no single run knows.
+void Variations::repeat(Variation& one, bool) const {
+  stiffen(one, nearly_one);
+  one.words = fmt::format("Young's modulus higher by {:.1g} of it, which changes the last digits", nearly_one - 1);
+}
+
+void Variations::modulus(Variation& one, bool) const {
+  if (!base_.material.stiffness_is_free()) return;
+  stiffen(one, modulus_factor);
   one.words = fmt::format("Young's modulus of {:.3g} Pa instead of {:.3g} Pa", one.options.material.youngs_modulus,
                           base_.material.youngs_modulus);
 }

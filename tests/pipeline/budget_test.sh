@@ -96,7 +96,7 @@ test_a_survey_without_a_known_error_is_named() {
   [[ $(field survey-1 state) == "left out" && $(field survey-1 run_out_m) == None ]] || fail "it is not said"
   printf '[ensemble.elevation_error]\nterrain_deviation_m = 0.2\nrange_m = 40.0\n' >>recipe.toml
   expect_exit 0 preprocess
-  expect_words "2 of 11 members get a domain of their own"
+  expect_words "2 of 12 members get a domain of their own"
   expect_exit 0 solve
   expect_exit 0 postprocess
   [[ $(field survey-1 state) == counted ]] || fail "the survey has no row"

@@ -324,7 +324,7 @@ TEST(BudgetOptions, list_the_recipe_itself_and_every_row_that_is_not_left_out) {
                           .budget))
     names += member.name + (member.name.starts_with(member.row) ? " " : " of " + member.row + " ");
   EXPECT_EQ(names,
-            "recipe step modulus integrator cells friction-less friction-more drag-less drag-more strength-less "
+            "recipe repeat step modulus integrator cells friction-less friction-more drag-less drag-more strength-less "
             "strength-more survey-1 survey-2 other of own ");
 }
 

@@ -9,6 +9,7 @@
 #include "postprocess/ensemble/member_analysis.hpp"
 #include "postprocess/ensemble/results.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/common/scratch.hpp"
 
 namespace talus::postprocess {
@@ -129,6 +130,18 @@ TEST_F(Budget, has_the_99th_percentile_beside_every_largest_value) {
   EXPECT_EQ(row["p99_speed_change_m_s"].get<double>(), 0.5);
   EXPECT_GT(found.lines[0].p99_change, 0);
   EXPECT_LE(found.lines[0].p99_change, found.lines[0].largest_change);
+}
+
+TEST_F(Budget, warns_where_other_last_digits_move_the_deposit) {
+  const auto found = [](const BudgetTable& table) { return test::messages_of([&] { warn_of_chaos(table); }); };
+  add("repeat", "repeat", 0);
+  add("step", "step", 3);
+  EXPECT_TRUE(found(table()).empty());
+  BudgetTable moved = table();
+  for (BudgetLine& line : moved.lines)
+    if (line.name == "repeat") line.elsewhere = 0.09;
+  ASSERT_EQ(found(moved).size(), 1u);
+  EXPECT_TRUE(holds(found(moved)[0], {"9 % of the deposit"}));
 }
 
 TEST_F(Budget, spreads_over_all_rows_and_over_those_of_a_kind) {

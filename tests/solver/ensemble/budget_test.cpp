@@ -124,7 +124,8 @@ TALUS_IN_EACH_PLACE(BudgetRuns);
 
 TEST_P(BudgetRuns, are_the_runs_that_the_recipe_makes_with_their_values) {
   const BudgetScene scene(heap_recipe() + budget_table, small_heap());
-  EXPECT_EQ(scene.names(), "step modulus integrator transfer friction-less friction-more strength-less strength-more ");
+  EXPECT_EQ(scene.names(),
+            "repeat step modulus integrator transfer friction-less friction-more strength-less strength-more ");
   expect_runs_by_hand(scene, GetParam());
 }
 
@@ -157,7 +158,7 @@ TEST_P(BudgetRuns, move_a_block_as_far_as_the_doubt_of_its_friction_does) {
   EXPECT_NEAR(change("friction-less"), block_way(0.9 * mu) - block_way(mu), 1e-3 * way);
   EXPECT_NEAR(change("friction-more"), block_way(1.1 * mu) - block_way(mu), 1e-3 * way);
   // The way of a rigid block depends neither on the step nor on the stiffness: what is left is within its own error.
-  for (const char* name : {"step", "modulus", "strength-less", "strength-more"})
+  for (const char* name : {"repeat", "step", "modulus", "strength-less", "strength-more"})
     EXPECT_NEAR(change(name), 0, 1e-3 * way) << name;
 }
 
@@ -225,10 +226,10 @@ TEST(BudgetVariations, are_those_of_the_law_of_the_bed) {
     return BudgetScene(text, small_heap()).names();
   };
   EXPECT_EQ(names_of("law = \"voellmy\"\n"),
-            "step modulus integrator friction-less friction-more drag-less drag-more ");
+            "repeat step modulus integrator friction-less friction-more drag-less drag-more ");
   EXPECT_EQ(names_of("law = \"velocity-weakening\"\n"),
-            "step modulus integrator friction-less friction-more weakening-rest weakening-fast ");
-  EXPECT_EQ(names_of("law = \"stick\"\n"), "step modulus integrator ");
+            "repeat step modulus integrator friction-less friction-more weakening-rest weakening-fast ");
+  EXPECT_EQ(names_of("law = \"stick\"\n"), "repeat step modulus integrator ");
 }
 
 TEST(BudgetVariations, leave_out_what_the_recipe_does_not_allow) {
