@@ -60,12 +60,18 @@ def make_scene(scene, asked, wanted):
         shutil.copyfile(asked.work / scene / "map.png", FOLDER / picture)
 
 
-def make_peaks(asked, picture):
-    """Peaks of the ISeeSnow avalanche beside other models' (tools/plot-peaks.py)."""
-    data, out = asked.data.resolve() / "iseesnow_realtopo", asked.work / "iseesnow-realtopo"
-    call([asked.bin / "talus", "run", ROOT / "pipelines/iseesnow-realtopo/recipe.toml", "--out", out, "-q"],
+# Scenes whose peaks are drawn beside other models': the folder of their data, and NAME=PREFIX of each model.
+PEAKS = {"iseesnow-realtopo": ("iseesnow_realtopo", ("com1DFA=com1DFA", "RAMMS=RAMMSUSER", "r.avaflow=avaflow")),
+         "avaframe-alr": ("avaframe_alr", ("com1DFA=com1dfa",)),
+         "avaframe-gar": ("avaframe_gar", ("com1DFA=com1dfa",))}
+
+
+def make_peaks(scene, asked, picture):
+    """Peaks of an avalanche beside other models' (tools/plot-peaks.py)."""
+    folder, others = PEAKS[scene]
+    data, out = asked.data.resolve() / folder, asked.work / scene
+    call([asked.bin / "talus", "run", ROOT / f"pipelines/{scene}/recipe.toml", "--out", out, "-q"],
          env=os.environ | {"TALUS_DATA": str(asked.data.resolve())}, stdout=subprocess.DEVNULL)
-    others = ("com1DFA=com1DFA", "RAMMS=RAMMSUSER", "r.avaflow=avaflow")
     call([sys.executable, ROOT / "tools/plot-peaks.py", FOLDER / picture, data / "dem.tif", f"Talus, 10 m={out}",
           *(other.replace("=", f"={data}/") for other in others)])
 
@@ -120,7 +126,7 @@ def make_all(names, asked):
         elif kind == "budget":
             make_budget(name, asked, pictures[0])
         elif kind == "peaks":
-            make_peaks(asked, pictures[0])
+            make_peaks(name, asked, pictures[0])
         elif kind == "case":
             shutil.copyfile(case_picture(name, asked), FOLDER / pictures[0])
         else:

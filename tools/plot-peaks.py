@@ -76,9 +76,12 @@ def main():
                       thickness.y - rows.max() * thickness.cell, thickness.y - rows.min() * thickness.cell])
     box = [min(b[0] for b in boxes) - 60, max(b[1] for b in boxes) + 60, min(b[2] for b in boxes) - 60,
            max(b[3] for b in boxes) + 60]
-    size = (3.4 * len(models), 7.4)
+    aspect = (box[3] - box[2]) / (box[1] - box[0])
+    high = min(3.4 * aspect, 5.0)  # of a map [inches]
+    size = (max(high / aspect, 1.6) * len(models) + 1.2, 2 * high + 0.6)
     figure, axes = plt.subplots(2, len(models), figsize=size, constrained_layout=True, squeeze=False)
-    for row, (title, top) in enumerate([("peak thickness, normal to the slope [m]", 15), ("peak speed [m/s]", 50)]):
+    for row, title in enumerate(["peak thickness, normal to the slope [m]", "peak speed [m/s]"]):
+        top = np.ceil(max(np.nanpercentile(model[1 + row].values, 99) for model in models))
         for column, model in enumerate(models):
             axis, raster = axes[row][column], model[1 + row]
             axis.imshow(shade, cmap="gray", extent=ground.extent(), vmin=-0.6, vmax=1.4)
