@@ -205,23 +205,26 @@ void add_line(const Line& line, Sheet& sheet) {
 }  // namespace
 
 void warn_of_end(const Run& run) {
-  constexpr double at_rest = 0.01;  // of the volume
-  const auto last = [&](const char* name) {
+  constexpr double at_rest = 0.01;  // of the volume, and of the largest kinetic energy
+  const auto values = [&](const char* name) {
     const HistoryColumn* column = run.history.find(name);
-    return column == nullptr || column->values.empty() ? nan : column->values.back();
+    return column == nullptr || column->values.empty() ? std::vector<double>{nan} : column->values;
   };
-  const double moving = last("moving_volume_m3"), share = moving / last("volume_m3");
-  if (!(share > at_rest)) return;
+  const std::vector<double> kinetic = values("kinetic_J");
+  const double energy = kinetic.back() / *std::max_element(kinetic.begin(), kinetic.end());
+  const double moving = values("moving_volume_m3").back(), share = moving / values("volume_m3").back();
+  if (!(energy > at_rest) && !(share > at_rest)) return;
+  const double speed = values("moving_speed_m_s").back();
   warn("ended-before-rest",
        fmt::format(
-           "the run ended before rest: at {:.3g} s {:.4g} m3, {:.3g} % of the mass, still moved faster than {:g} "
-           "m/s, at {:.3g} m/s on average ({}). The deposit is no final one. Give a larger end_time_s, or a "
-           "smaller stop_kinetic_fraction, in [solve]",
-           run.summary.time_end, moving, 100 * share, moving_faster_than, last("moving_speed_m_s"),
-           run.summary.stop_reason),
-       {{"moving_share", share, "1"},
+           "the run ended before rest, at {:.3g} s with {:.3g} % of its largest kinetic energy ({}): {:.4g} m3, "
+           "{:.3g} % of the mass, still moved faster than {:g} m/s, at {:.3g} m/s on average. The deposit is no "
+           "final one. Give a larger end_time_s, and stop_kinetic_fraction = 0.001 or less, in [solve]",
+           run.summary.time_end, 100 * energy, run.summary.stop_reason, moving, 100 * share, moving_faster_than, speed),
+       {{"kinetic_energy_share", energy, "1"},
+        {"moving_share", share, "1"},
         {"moving_volume", moving, "m3"},
-        {"moving_speed", last("moving_speed_m_s"), "m s-1"},
+        {"moving_speed", speed, "m s-1"},
         {"time", run.summary.time_end, "s"}});
 }
 

@@ -55,7 +55,8 @@ struct Score {
 Score make_score(const Run& run, const Options& options, const std::optional<Survey>& survey, const Thalweg& thalweg,
                  const Hazard* hazard = nullptr);
 
-/// Warns of a run that ended while more than a hundredth of its volume moved, with what still moves.
+/// Warns of a run that ended while more than a hundredth of its volume moved, or of its largest kinetic energy was
+/// left.
 void warn_of_end(const Run& run);
 
 /// One flat object: key -> value; `not_scored` says why a value is absent; `findings` is an array of objects.

@@ -460,7 +460,7 @@ test_advice_is_said_before_the_run_and_in_the_report() {
   expect_exit 0 solve --plan "${set[@]}"
   expect_words 'advice: end_time_s = 0.5 is likely before rest'
   local word
-  for word in 'end_time_s = 0.5 is likely before rest' 'the run ended before rest: at 0.5 s ' \
+  for word in 'end_time_s = 0.5 is likely before rest' 'the run ended before rest, at 0.5 s with ' \
     'the grid is coarse for this release'; do
     grep -qF -- "$word" out/report.html || fail "the report does not say: $word"
     grep -qF -- "$word" out/score.json || fail "the score does not say: $word"

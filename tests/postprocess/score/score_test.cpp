@@ -153,19 +153,21 @@ TEST(Score, has_the_findings_of_all_stages) {
                     {"Refused and accepted in [preprocess], \"swapped-surveys\": what rose"}));
 }
 
-TEST(Score, warns_of_a_run_that_ended_while_more_than_a_hundredth_of_it_moved) {
+TEST(Score, warns_of_a_run_that_ended_while_a_hundredth_of_it_moved) {
   auto run = small_run();
-  const auto found = [&](double moving) {
-    run.history.columns = {{"volume_m3", "m3", "", "", {24000, 24000}},
+  const auto found = [&](double moving, double energy) {
+    run.history.columns = {{"kinetic_J", "J", "", "", {9e9, energy}},
+                           {"volume_m3", "m3", "", "", {24000, 24000}},
                            {"moving_volume_m3", "m3", "", "", {20000, moving}},
                            {"moving_speed_m_s", "m s-1", "", "", {30, 2.5}}};
     return test::findings_of([&] { warn_of_end(run); });
   };
-  EXPECT_TRUE(found(239).empty());
-  const std::vector<Finding> ended = found(480);
+  EXPECT_TRUE(found(239, 8e7).empty());
+  EXPECT_EQ(found(0, 9e9).size(), 1u) << "a slow slide";
+  const std::vector<Finding> ended = found(480, 9e6);
   ASSERT_EQ(ended.size(), 1u);
   EXPECT_EQ(ended[0].name, "ended-before-rest");
-  EXPECT_TRUE(holds(ended[0].message, {"480 m3", "2 %", "2.5 m/s", "end time"}));
+  EXPECT_TRUE(holds(ended[0].message, {"0.1 %", "480 m3", "2 %", "2.5 m/s", "end time"}));
 }
 
 TEST(Score, measures_residuals_by_the_surveys_error_and_warns_where_it_hides_deposit) {
