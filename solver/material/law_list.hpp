@@ -4,9 +4,12 @@
 // kernel, without virtual calls or pointers to functions.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "common/recipe/recipe.hpp"
@@ -80,6 +83,30 @@ struct OptionsOfLaws<LawList<Laws...>> : Laws::Options... {
     return *this;
   }
 };
+
+/// The numbers that options describe, by their keys; `table`: what describe() is told besides.
+template <class Options, class... Table>
+std::map<std::string, double, std::less<>> numbers_of(Options options, const Table&... table) {
+  struct Lister final : recipe::Visitor {
+    std::map<std::string, double, std::less<>> found;
+    void number(std::string_view key, double& value, recipe::Range, std::string_view) override {
+      found.emplace(key, value);
+    }
+  } lister;
+  options.describe(lister, table...);
+  return std::move(lister.found);
+}
+
+/// The keys of numbers that are not their law's own and not at their defaults: they have no effect.
+template <class Laws, class Uses>
+std::vector<std::string> idle_keys(const OptionsOfLaws<Laws>& options, const Uses& uses) {
+  const LawTable unnamed{};
+  const auto usual = numbers_of(OptionsOfLaws<Laws>{}, unnamed);
+  std::vector<std::string> idle;
+  for (const auto& [key, value] : numbers_of(options, unnamed))
+    if (value != usual.at(key) && !uses(key)) idle.push_back(key);
+  return idle;
+}
 
 /// The number in words: as few digits as read back to the same number.
 std::string shortest(double value);

@@ -60,6 +60,10 @@ bool BaseOptions::uses(std::string_view key) const {
   return visit_law(law, [&](auto own) { return own.uses(key) || (own.rubs && is_common(key)); });
 }
 
+std::vector<std::string> BaseOptions::idle() const {
+  return idle_keys(*this, [&](std::string_view key) { return uses(key); });
+}
+
 bool BaseOptions::asks_column() const {
   return visit_law(law, [](auto own) { return decltype(own)::asks_column; });
 }

@@ -24,6 +24,7 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   /// The number that the recipe calls by this name, null where it has none.
   double* named(std::string_view key);
   bool uses(std::string_view key) const;  ///< whether the chosen law uses a key
+  std::vector<std::string> idle() const;  ///< the keys of numbers that are given for another law than the chosen one
   bool asks_column() const;               ///< whether the law's coefficient follows from weight and speed of a column
   std::string law_name() const;
   /// The key that alone decides the friction of the chosen law; empty where several do.

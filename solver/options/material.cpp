@@ -12,6 +12,11 @@ bool MaterialOptions::softens() const {
   return with_law([](auto, const auto& options) { return options.softens(); });
 }
 
+std::vector<std::string> MaterialOptions::idle() const {
+  const auto own = with_law([](auto, const auto& options) { return numbers_of(options, LawTable{}); });
+  return idle_keys(*this, [&](std::string_view key) { return own.contains(key); });
+}
+
 bool MaterialOptions::dilates() const {
   return with_law([](auto, const auto& options) { return options.dilates(); });
 }

@@ -32,6 +32,7 @@ struct MaterialOptions : OptionsOfLaws<MaterialLaws> {
   auto with_law(const Visit& visit) const {
     return visit_law(model, [&](auto law) { return visit(law, options_of<decltype(law)>()); });
   }
+  std::vector<std::string> idle() const;  ///< the keys of numbers that are given for another law than the chosen one
   /// Whether strength falls as the material shears.
   bool softens() const;
   /// Whether shear changes the volume of the material.

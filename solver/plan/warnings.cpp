@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/stage/findings.hpp"
 #include "solver/boundary/base_friction.hpp"
@@ -168,13 +169,29 @@ void warn_of_shaking(const Shaking& shaking, const SolveOptions& o) {
          {{"final_velocity", last, "m s-1"}, {"largest_velocity", most, "m s-1"}});
 }
 
+/// Warns of numbers that belong to other laws than the one that a table chooses.
+void warn_of_idle_keys(const std::vector<std::string>& idle, const std::string& table, const std::string& law) {
+  if (idle.empty()) return;
+  warn("idle-keys", fmt::format("{} {} {} no effect with {}: other laws use {}. Leave {} out", table,
+                                fmt::join(idle, ", "), idle.size() == 1 ? "has" : "have", law,
+                                idle.size() == 1 ? "it" : "them", idle.size() == 1 ? "it" : "them"));
+}
+
 void warn_of_plan(const Plan& plan) {
   const Domain& domain = *plan.domain;
   const SolveOptions& options = plan.options;
+  warn_of_idle_keys(options.base.idle(), "[solve.base]", fmt::format("law = \"{}\"", options.base.law_name()));
+  const auto warn_of_idle_keys_of = [](const MaterialOptions& material, const std::string& table) {
+    warn_of_idle_keys(material.idle(), table, fmt::format("model = \"{}\"", material.name()));
+  };
+  warn_of_idle_keys_of(options.material, "[solve.material]");
   const double bed = bed_friction(domain, options), depth = thickness(domain);
   warn_of_material(options.material, "[solve.material]", bed, depth);
-  for (const PartOptions& part : options.parts)
-    warn_of_material(part.material, fmt::format("[[solve.part]] \"{}\"", part.release), bed, depth);
+  for (const PartOptions& part : options.parts) {
+    const std::string table = fmt::format("[[solve.part]] \"{}\"", part.release);
+    warn_of_material(part.material, table, bed, depth);
+    warn_of_idle_keys_of(part.material, table);
+  }
   warn_of_lone_columns(domain, options);
   warn_of_inflows(plan.scene, options);
   warn_of_shaking(plan.scene.shaking, options);

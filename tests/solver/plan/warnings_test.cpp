@@ -49,6 +49,22 @@ TEST(Warnings, are_silent_of_a_mass_that_is_stronger_than_its_bed) {
   EXPECT_TRUE(warnings(mass_on_bed(20.01, 20)).empty()) << "simple shear mobilises the tangent";
 }
 
+TEST(Warnings, name_numbers_of_other_laws) {
+  SolveOptions o = mass_on_bed(35, 20);
+  o.material.yield_stress = 120;
+  EXPECT_TRUE(
+      test::holds(warning(o), {"[solve.material] yield_stress_Pa has no effect with model = \"drucker-prager\""}));
+  o = mass_on_bed(35, 25);
+  o.base.law = FrictionLaw::samosat;
+  o.base.turbulence = 700;
+  EXPECT_TRUE(test::holds(warning(o), {"[solve.base] friction_angle_deg, turbulence_m_s2 have no effect with law = "
+                                       "\"samosat\""}));
+  o = mass_on_bed(35, 20);
+  o.base.law = FrictionLaw::voellmy;
+  o.base.turbulence = 700;
+  EXPECT_TRUE(warnings(o).empty()) << "its coefficient is Coulomb's";
+}
+
 TEST(Warnings, name_a_mass_that_gives_way_inside) {
   EXPECT_TRUE(test::holds(warning(mass_on_bed(17, 25)), {"0.306", "friction_angle_deg = 17", "0.466 (25.0 deg)",
                                                          "as on a bed of 17.0 deg", "33.1 deg or more"}));
@@ -77,13 +93,13 @@ TEST(Warnings, count_cohesion_pore_pressure_rasters_and_parts) {
 }
 
 TEST(Warnings, take_the_most_that_laws_of_columns_ask) {
-  SolveOptions o = mass_on_bed(15, 5);
+  SolveOptions o = mass_on_bed(15, 20);
   o.base.law = FrictionLaw::samosat;  // at rest twice mu
   o.base.friction_coefficient = 0.13;
   EXPECT_TRUE(warnings(o).empty());
   o.base.friction_coefficient = 0.14;
   EXPECT_TRUE(says(warnings(o), "the bed asks up to 0.280 (15.6 deg)"));
-  o = mass_on_bed(31, 5);
+  o = mass_on_bed(31, 20);
   o.base.law = FrictionLaw::pouliquen;  // under the thinnest layer tan 22.2 + tan 30.7 - tan 21 = 0.618
   EXPECT_TRUE(says(warnings(o), "the bed asks up to 0.618 (31.7 deg)"));
   o.material.friction_angle = 32;
@@ -135,7 +151,7 @@ TEST(Warnings, name_a_cone_that_would_carry_tension) {
 }
 
 TEST(Warnings, look_at_the_angles_and_grains_of_mu_of_i) {
-  SolveOptions o = mass_on_bed(50, 20);  // whose angle is another law's
+  SolveOptions o = mass_on_bed(30, 20);
   o.material.model = MaterialModel::mu_of_i;
   o.material.density = 1500;
   EXPECT_TRUE(warnings(o).empty());
@@ -165,13 +181,13 @@ TEST(Warnings, look_at_the_packing_of_mu_of_i) {
 }
 
 TEST(Warnings, are_silent_of_mud_whose_strength_is_no_friction) {
-  SolveOptions o = mass_on_bed(17, 25);
+  SolveOptions o = mass_on_bed(30, 25);
   o.material.model = MaterialModel::herschel_bulkley;
   EXPECT_TRUE(warnings(o).empty());
 }
 
 TEST(Warnings, are_silent_of_a_bed_that_sticks_or_does_not_rub) {
-  SolveOptions o = mass_on_bed(17, 25);
+  SolveOptions o = mass_on_bed(17, 20);
   for (const auto law : {FrictionLaw::none, FrictionLaw::stick}) {
     o.base.law = law;
     EXPECT_TRUE(warnings(o).empty());
