@@ -10,6 +10,7 @@
 #include <ogrsf_frmts.h>
 
 #include "common/gis/gdal_support.hpp"
+#include "common/stage/findings.hpp"
 
 namespace talus {
 namespace fs = std::filesystem;
@@ -76,26 +77,63 @@ MapPolygon attributes_of(const OGRFeature& feature) {
   return polygon;
 }
 
-/// The polygons of a feature; `other` becomes the name of its shape where that holds none.
-std::vector<MapPolygon> polygons_of(const gdal::VectorLayer& from, const OGRFeature& feature, std::string& other) {
+/// Shapes of a layer that are not what is read from it.
+struct LeftOut {
+  std::size_t count = 0;
+  std::string first;  ///< "feature 2, a LINESTRING"
+  std::string kind;   ///< of the last: "LINESTRING"
+
+  void add(const OGRFeature& feature, const std::string& other) {
+    if (feature.GetGeometryRef() != nullptr) kind = other;
+    if (count++ == 0) first = fmt::format("feature {}, {}", feature.GetFID(), other);
+  }
+  /// Warns of them where others were read.
+  void warn_of(const gdal::VectorLayer& from, const std::string& wanted) const {
+    if (count == 0) return;
+    const std::string what = count == 1 ? "1 shape that is" : fmt::format("{} shapes that are", count);
+    warn(
+        "shapes-left-out",
+        fmt::format("{}: layer \"{}\" has {} no {}, left out ({}{}). Draw a {} each, or choose features by a condition "
+                    "(FILE|subset=CONDITION)",
+                    from.file().string(), from.layer().GetName(), what, wanted, count == 1 ? "" : "the first is ",
+                    first, wanted),
+        {{"shapes", static_cast<double>(count), "1"}});
+  }
+};
+
+/// The polygons of a feature; what else it holds is added to `left_out`.
+std::vector<MapPolygon> polygons_of(const gdal::VectorLayer& from, const OGRFeature& feature, LeftOut& left_out) {
   std::vector<MapPolygon> polygons;
   const std::unique_ptr<OGRGeometry> shape = from.shape_of(feature);
-  if (shape == nullptr) return polygons;
+  if (shape == nullptr || shape->IsEmpty()) {
+    left_out.add(feature, "without a shape");
+    return polygons;
+  }
   gdal::for_each_part(*shape, [&](const OGRGeometry& part) {
-    if (wkbFlatten(part.getGeometryType()) != wkbPolygon) return;
     MapPolygon polygon = attributes_of(feature);
-    polygon.rings = rings_of(*part.toPolygon(), from.file());
-    if (!polygon.rings.empty()) polygons.push_back(std::move(polygon));
+    const bool fits = wkbFlatten(part.getGeometryType()) == wkbPolygon;
+    if (fits) polygon.rings = rings_of(*part.toPolygon(), from.file());
+    if (polygon.rings.empty())
+      left_out.add(feature, fits ? "a POLYGON without area" : part.getGeometryName());
+    else
+      polygons.push_back(std::move(polygon));
   });
-  if (polygons.empty()) other = shape->getGeometryName();
   return polygons;
 }
 
-void add_lines(const OGRGeometry& shape, const fs::path& file, std::vector<MapLine>& lines) {
-  gdal::for_each_part(shape, [&](const OGRGeometry& part) {
-    if (wkbFlatten(part.getGeometryType()) != wkbLineString) return;
-    MapLine points = finite_points_of(*part.toLineString(), file, "a line", "Draw the line again");
-    if (points.size() > 1) lines.push_back(std::move(points));
+/// Adds the lines of a feature; what else it holds is added to `left_out`.
+void add_lines(const gdal::VectorLayer& from, const OGRFeature& feature, std::vector<MapLine>& lines,
+               LeftOut& left_out) {
+  const std::unique_ptr<OGRGeometry> shape = from.shape_of(feature);
+  if (shape == nullptr || shape->IsEmpty()) return left_out.add(feature, "without a shape");
+  gdal::for_each_part(*shape, [&](const OGRGeometry& part) {
+    const bool fits = wkbFlatten(part.getGeometryType()) == wkbLineString;
+    MapLine points;
+    if (fits) points = finite_points_of(*part.toLineString(), from.file(), "a line", "Draw the line again");
+    if (points.size() > 1)
+      lines.push_back(std::move(points));
+    else
+      left_out.add(feature, fits ? "a LINESTRING without length" : part.getGeometryName());
   });
 }
 
@@ -138,12 +176,13 @@ std::optional<NoPlace> set_points(const fs::path& file, const OGRGeometry* shape
 std::vector<MapPolygon> read_polygons(const fs::path& source, const std::string& crs_wkt, const std::string& usual) {
   const gdal::VectorLayer from(source, crs_wkt, usual);
   std::vector<MapPolygon> polygons;
-  std::string other;
+  LeftOut left_out;
   for (const auto& feature : from.layer())
-    for (MapPolygon& polygon : polygons_of(from, *feature, other)) polygons.push_back(std::move(polygon));
+    for (MapPolygon& polygon : polygons_of(from, *feature, left_out)) polygons.push_back(std::move(polygon));
   from.require_whole();
   if (polygons.empty())
-    throw DataError(from.none_found("polygon", other, "Draw the outline as a polygon, or name another layer"));
+    throw DataError(from.none_found("polygon", left_out.kind, "Draw the outline as a polygon, or name another layer"));
+  left_out.warn_of(from, "polygon");
   return polygons;
 }
 
@@ -151,33 +190,30 @@ std::vector<PolygonFeature> read_polygon_features(const fs::path& source, const 
   const gdal::VectorLayer from(source, crs_wkt);
   const std::string file = from.file().string(), id = from.layer().GetFIDColumn();
   std::vector<PolygonFeature> features;
-  std::string other;
+  LeftOut left_out;
   for (const auto& feature : from.layer()) {
     const std::string where = fmt::format("{} = {}", id.empty() ? "FID" : '"' + id + '"', feature->GetFID());
     features.push_back({.source = VectorSource{from.file(), from.layer().GetName(), where}.text(),
                         .place = fmt::format("{}, feature {}", file, feature->GetFID()),
                         .number = feature->GetFID(),
-                        .polygons = polygons_of(from, *feature, other),
+                        .polygons = polygons_of(from, *feature, left_out),
                         .values = gdal::values_of(*feature)});
   }
   from.require_whole();
+  left_out.warn_of(from, "polygon");
   return features;
 }
 
 std::vector<MapLine> read_lines(const fs::path& source, const std::string& crs_wkt) {
   const gdal::VectorLayer from(source, crs_wkt);
   std::vector<MapLine> lines;
-  std::string other;
-  for (const auto& feature : from.layer()) {
-    const std::unique_ptr<OGRGeometry> shape = from.shape_of(*feature);
-    if (shape == nullptr) continue;
-    const std::size_t before = lines.size();
-    add_lines(*shape, from.file(), lines);
-    if (lines.size() == before) other = shape->getGeometryName();
-  }
+  LeftOut left_out;
+  for (const auto& feature : from.layer()) add_lines(from, *feature, lines, left_out);
   from.require_whole();
   if (lines.empty())
-    throw DataError(from.none_found("line", other, "Draw a line from the crown downwards, or name another layer"));
+    throw DataError(
+        from.none_found("line", left_out.kind, "Draw a line from the crown downwards, or name another layer"));
+  left_out.warn_of(from, "line");
   return lines;
 }
 

@@ -8,6 +8,7 @@
 #include "common/gis/features.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/signals.hpp"
 
 namespace talus::gdal {
@@ -30,9 +31,15 @@ Dataset open_vector(const fs::path& file) {
 OGRLayer* layer_of(GDALDataset& dataset, const VectorSource& source, const std::string& usual) {
   const std::string& name = source.layer.empty() ? usual : source.layer;
   if (OGRLayer* named = name.empty() ? nullptr : dataset.GetLayerByName(name.c_str())) return named;
-  if (source.layer.empty()) return dataset.GetLayer(0);
   std::vector<std::string> there;
   for (auto* layer : dataset.GetLayers()) there.emplace_back(layer->GetName());
+  if (source.layer.empty()) {
+    if (there.size() > 1)
+      warn("layers-left-out", fmt::format("{}: layer \"{}\" is read, the first of {}. Say which one is meant: "
+                                          "\"FILE|layername=LAYER\" with {}",
+                                          source.file.string(), there.front(), there.size(), fmt::join(there, ", ")));
+    return dataset.GetLayer(0);
+  }
   throw DataError({fmt::format("{}: no layer \"{}\" in it", source.file.string(), name),
                    fmt::format("it has {}", fmt::join(there, ", ")), "Name one that is there"});
 }

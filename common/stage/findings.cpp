@@ -80,6 +80,7 @@ void Findings::keep(const Finding& finding, bool logged) {
 void add_finding(Finding finding) {
   finding.message = with_shown_paths(finding.message);
   if (finding.stage.empty() && innermost != nullptr) finding.stage = innermost->stage_;
+  if (innermost != nullptr && std::ranges::find(innermost->list_, finding) != innermost->list_.end()) return;
   Findings::keep(finding, true);
 }
 

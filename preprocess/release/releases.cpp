@@ -15,6 +15,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
+#include "preprocess/regions/regions.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
@@ -78,9 +79,60 @@ void refuse_negative(const Raster& thickness, const std::filesystem::path& file)
                    file.string())});
 }
 
+/// The volume that cells without data would hold at the mean thickness around them, where that is a release on all
+/// sides; 0 where it is not, or where they reach the edge of the raster [m3].
+double missing_in(const Raster& thickness, const std::vector<std::array<int, 2>>& cells) {
+  double sum = 0, count = 0;
+  for (const auto& [column, row] : cells) {
+    const auto near = around(thickness.grid, thickness.grid.index(column, row));
+    if (near.size() < 8) return 0;
+    for (const std::size_t n : near) {
+      const double t = thickness.values[n];
+      if (std::isnan(t)) continue;
+      if (!(t > 0)) return 0;
+      sum += t;
+      ++count;
+    }
+  }
+  return static_cast<double>(cells.size()) * thickness.grid.cell * thickness.grid.cell * sum / count;
+}
+
+/// Warns of cells without data that a release encloses.
+void warn_of_holes(const Raster& thickness, const std::filesystem::path& file) {
+  const MapGrid& grid = thickness.grid;
+  std::vector<char> bare(thickness.values.size());
+  double whole = 0;
+  for (std::size_t i = 0; i < bare.size(); ++i) {
+    bare[i] = std::isnan(thickness.values[i]);
+    if (!bare[i]) whole += thickness.values[i] * grid.cell * grid.cell;
+  }
+  double missing = 0;
+  std::size_t cells = 0;
+  std::array<int, 2> first{};
+  each_cell(grid, [&](int column, int row) {
+    if (!bare[grid.index(column, row)]) return;
+    const auto hole = take_connected(grid, bare, {{column, row}});
+    const double volume = missing_in(thickness, hole);
+    if (!(volume > 0)) return;
+    if (cells == 0) first = {column, row};
+    cells += hole.size();
+    missing += volume;
+  });
+  if (cells == 0) return;
+  warn(
+      "holes-in-release",
+      fmt::format("{}: {} cells without data lie inside the release, the first at x {:.1f}, y {:.1f}. They count as no "
+                  "thickness: about {} m3 are missing, {:.2g} % of what is there. Fill them (gdal_fillnodata.py {} "
+                  "out.tif), or write 0 where nothing was released",
+                  file.string(), cells, grid.x(first[0]), grid.y(first[1]), grouped(missing), 100 * missing / whole,
+                  file.string()),
+      {{"cells", static_cast<double>(cells), "1"}, {"missing_volume", missing, "m3"}});
+}
+
 Raster from_raster(const ReleaseOptions& options, const MapGrid& grid) {
   const Raster thickness = read_raster(options.thickness_raster);
   refuse_negative(thickness, options.thickness_raster);
+  warn_of_holes(thickness, options.thickness_raster);
   return thickness_onto_grid(thickness, grid, options.thickness_raster);
 }
 

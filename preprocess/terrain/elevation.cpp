@@ -12,6 +12,7 @@
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/terrain/plausible_ground.hpp"
 #include "preprocess/terrain/triangulation.hpp"
 
 namespace talus::preprocess {
@@ -155,9 +156,10 @@ Elevation read_elevation(const std::string& key, const std::filesystem::path& fi
     if (!elevation.reprojected) options.to_crs.clear();
     elevation.on_disk = std::make_shared<RasterFile>(file, options);
     elevation.raster.grid = elevation.on_disk->grid();
-    if (!key.starts_with("bed."))
-      warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0),
-                    elevation.cell());
+    if (key.starts_with("bed.")) return elevation;
+    elevation.has_fill = std::make_shared<bool>(false);
+    warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0),
+                  elevation.cell());
   }
   return elevation;
 }
@@ -167,7 +169,9 @@ Raster onto_grid(const Elevation& elevation, const MapGrid& grid) {
   if (elevation.on_disk) {
     const Extent needed{grid.west - placement.x, grid.south - placement.y, grid.east() - placement.x,
                         grid.north() - placement.y};
-    return onto_grid(part_of(elevation, needed, grid.crs_wkt), grid);
+    const Elevation part = part_of(elevation, needed, grid.crs_wkt);
+    if (part.has_fill && !*part.has_fill) *part.has_fill = judge_fill_values(part.raster, part.file);
+    return onto_grid(part, grid);
   }
   MapGrid from = grid;
   from.west -= placement.x;

@@ -36,6 +36,7 @@ struct Elevation {
   bool reprojected = false;                   // as it was read: its data end in slanting lines
   Raster raster;                              // its cells, or of one that stays in its file, nothing but the grid
   std::shared_ptr<const RasterFile> on_disk;  // read by parts, as they are needed
+  std::shared_ptr<bool> has_fill;  // whether fill values were found in it, among its copies; null: of no ground
   ScatteredPoints points;
   Placement placement = {};  // in the CRS of the working grid
 

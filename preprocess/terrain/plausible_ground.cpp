@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "common/gis/crs.hpp"
@@ -47,11 +48,63 @@ std::string unit_advice(VerticalUnit unit) {
       return "The recipe says that they are in feet and they are taken so: check places and nodata of the file";
     case VerticalUnit::metre:
       return "The recipe says metres: if it is wrong, say vertical_unit = \"foot\" in [preprocess]";
-    default: return "Say so: vertical_unit = \"foot\" (or \"us-survey-foot\") in [preprocess]";
+    default:
+      return "If they are in feet, say so: vertical_unit = \"foot\" (or \"us-survey-foot\") in [preprocess]; it makes "
+             "mountains of metres three times lower";
   }
 }
 
+/// Cells that hold one extreme value exactly, and how far the nearest other value lies.
+struct Plateau {
+  double value;
+  std::size_t cells = 0, first = 0;
+  double next;
+};
+
+/// The cells at the end of the values that `before` orders first.
+template <class Before>
+Plateau plateau_at_end(const std::vector<double>& values, double end, double other_end, const Before& before) {
+  Plateau p{.value = end, .next = other_end};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == end) {
+      if (p.cells++ == 0) p.first = i;
+    } else if (before(values[i], p.next)) {  // false for nodata
+      p.next = values[i];
+    }
+  }
+  return p;
+}
+
 }  // namespace
+
+bool judge_fill_values(const Raster& heights, const std::filesystem::path& file) {
+  constexpr std::size_t least_cells = 4;  // fewer are spikes or pits
+  constexpr double least_jump = 50, jump_share = 0.25;
+  double low = INFINITY, high = -INFINITY;
+  for (const double z : heights.values) {
+    if (z < low) low = z;
+    if (z > high) high = z;
+  }
+  const auto judge = [&](const Plateau& p, double other_end) {
+    const double jump = std::abs(p.next - p.value), span = std::abs(other_end - p.next);
+    if (p.cells < least_cells || !(jump > std::max(least_jump, jump_share * span))) return false;
+    const auto columns = static_cast<std::size_t>(heights.grid.columns);
+    refuse_unless_accepted(
+        "fill-value",
+        {fmt::format("{}: {} cells hold {:g} exactly, the first at x {:.1f}, y {:.1f}", file.string(), p.cells, p.value,
+                     heights.grid.x(static_cast<int>(p.first % columns)),
+                     heights.grid.y(static_cast<int>(p.first / columns))),
+         fmt::format("the nearest other height is {:g} m, all others span {:.4g} m: a value that stands for missing "
+                     "cells, which the file does not declare as nodata, or a level of another unit or datum",
+                     p.next, span),
+         fmt::format("Declare it: gdal_edit.py -a_nodata {:.17g} {}", p.value, file.string())},
+        {{"cells", static_cast<double>(p.cells), "1"}, {"value", p.value, "m"}, {"jump", jump, "m"}});
+    return true;
+  };
+  if (!(low < high)) return false;
+  const bool below = judge(plateau_at_end(heights.values, low, high, std::less<>()), high);
+  return judge(plateau_at_end(heights.values, high, low, std::greater<>()), low) || below;
+}
 
 void judge_lengths(const MapGrid& grid, const std::string& working_crs) {
   const auto scale = grid_scale(grid);
@@ -87,9 +140,9 @@ void judge_heights(const Raster& surface, const std::filesystem::path& file, Ver
       "steep-ground",
       {fmt::format("{}: a tenth of the ground is steeper than {:.0f} degrees, the highest lies at {:.0f} m",
                    file.string(), steep, highest),
-       fmt::format("terrain has {:.0f} degrees at most there, and no mountain is higher than {:.0f} m: are heights in "
-                   "feet, which the file does not say, or places in another unit than heights? As feet it were {:.0f} "
-                   "degrees",
+       fmt::format("few terrains exceed {:.0f} degrees there, and no mountain is higher than {:.0f} m. Rock walls of a "
+                   "mountain do, and then all is well; or heights are in feet, which the file does not say (as feet it "
+                   "were {:.0f} degrees), or places in another unit than heights. A known summit or bench mark tells",
                    steep_deg, highest_mountain,
                    std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
        unit_advice(unit)},

@@ -20,4 +20,9 @@ void judge_lengths(const MapGrid& grid, const std::string& working_crs);
 /// tenth is steeper than 26 to 43 degrees, and read as feet 58 to 72.
 void judge_heights(const Raster& surface, const std::filesystem::path& file, VerticalUnit unit);
 
+/// Refuses, unless accepted ("fill-value"), heights [m] of which four cells or more hold the lowest or highest value
+/// exactly, with a jump to all others of 50 m at least and of a quarter of what those span: no ground lies so, but a
+/// value that stands for missing cells does. Returns whether there is one.
+bool judge_fill_values(const Raster& heights, const std::filesystem::path& file);
+
 }  // namespace talus::preprocess

@@ -8,6 +8,7 @@
 #include "common/gis/crs.hpp"
 #include "common/gis/features.hpp"
 #include "common/gis/outlines.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/common/geojson.hpp"
 #include "tests/common/rasters.hpp"
 #include "tests/preprocess/terrain.hpp"
@@ -47,6 +48,33 @@ TEST_F(ReadPolygons, reads_rings_holes_attributes_and_multipolygons_and_skips_ot
                               feature("Point", "[1,1]"),
                           32611);
   EXPECT_EQ(read_polygons(file, "").size(), 2u);
+}
+
+TEST_F(ReadPolygons, warns_of_shapes_and_layers_that_are_left_out) {
+  const auto found = [](const auto& read) { return test::messages_of(read); };
+  const auto whole = write(feature("Polygon", triangle), 32611);
+  EXPECT_TRUE(found([&] { read_polygons(whole, ""); }).empty());
+  const auto mixed = write(feature("Polygon", triangle) + "," + feature("LineString", "[[0,0],[9,0],[9,9],[0,0]]") +
+                               "," + feature("Polygon", "[[[0,0],[1,0],[0,0]]]"),
+                           32611);
+  const auto left = found([&] {
+    read_polygons(mixed, "");
+    read_polygons(mixed, "");
+  });
+  ASSERT_EQ(left.size(), 1u) << "said once";
+  EXPECT_TRUE(holds(left[0], {"a.geojson: layer \"a\" has 2 shapes that are no polygon", "feature 1, LINESTRING"}));
+  const auto lines = found([&] { read_lines(mixed, ""); });
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_TRUE(holds(lines[0], {"2 shapes that are no line", "feature 0, POLYGON"}));
+  const std::filesystem::path two = scratch / "two.gpkg";
+  MapPolygon shape;
+  shape.rings = {{{0, 0}, {9, 0}, {9, 9}, {0, 9}}};
+  const OutlineFeature square{"square", {shape}, {}};
+  write_outlines(two, test::epsg(32611), {{"release", {square}}, {"deposit", {square}}});
+  const auto layers = found([&] { read_polygons(two, ""); });
+  ASSERT_EQ(layers.size(), 1u);
+  EXPECT_TRUE(holds(layers[0], {"layer \"release\" is read", "release, deposit"}));
+  EXPECT_TRUE(found([&] { read_polygons(two.string() + "|layername=deposit", ""); }).empty());
 }
 
 TEST_F(ReadPolygons, carries_them_to_the_working_crs) {

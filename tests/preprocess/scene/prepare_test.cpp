@@ -82,6 +82,27 @@ TEST(prepare, lays_releases_onto_the_base_and_turns_slope_normal_thickness_into_
     ASSERT_NEAR(turned.domain.release_thickness.values[i], scene.bowl.values[i] / cosine[i], 1e-9);
 }
 
+TEST(prepare, warns_of_cells_without_data_inside_a_release) {
+  Scene scene;
+  ReleaseOptions& release = scene.as_release();
+  Raster thickness = scene.bowl;
+  for (double& t : thickness.values)
+    if (!(t > 0)) t = nan;  // beside it
+  release.thickness_raster = test::write(scene.scratch, "release.tif", thickness);
+  const auto said = [&] {
+    return std::ranges::count(scene.prepare().domain.findings, "holes-in-release", &Finding::name);
+  };
+  EXPECT_EQ(said(), 0);
+  test::punch(thickness, {12, 16, 2, 2});
+  test::write(scene.scratch, "release.tif", thickness);
+  EXPECT_EQ(said(), 1);
+  const std::vector<Finding> findings = scene.prepare().domain.findings;
+  const auto hole = std::ranges::find(findings, "holes-in-release", &Finding::name);
+  EXPECT_EQ(hole->numbers.at(0).value, 4);
+  // The bowl is 17 m deep at the least there.
+  EXPECT_NEAR(hole->numbers.at(1).value, 4 * 100 * 17, 4 * 100 * 3);
+}
+
 TEST(prepare, gives_polygons_their_area_times_thickness) {
   Scene scene;
   ReleaseOptions& release = scene.as_release();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wrong elevation models, with the message that each prints.
 #include "preprocess/terrain/geo_input.hpp"
+#include "preprocess/terrain/plausible_ground.hpp"
 #include "tests/preprocess/scene.hpp"
 
 namespace talus::preprocess {
@@ -42,6 +43,25 @@ TEST_F(refusal, crs_of_two_places) {
       "./after.tif: covers x -3144063..-3143480, y 13654458..13655024, while ./before.tif covers x 500000..500400, y "
       "5100000..5100300 (they do not overlap; the one says it is in EPSG:32611, the other in EPSG:32633). Check both "
       "with gdalinfo; where a CRS is named wrongly, name the right one: gdal_edit.py -a_srs EPSG:<code> ./after.tif");
+}
+
+TEST_F(refusal, values_that_stand_for_missing_cells) {
+  for (Raster* surface : {&before, &after})
+    for (double& z : surface->values) z += 1000;
+  rewrite_before(before);
+  for (const double value : {-32767.0, -99999.0, 65535.0, 0.0}) {
+    Raster filled = after;
+    for (int row = 4; row < 8; ++row)
+      for (int column = 30; column < 35; ++column) filled.at(column, row) = value;
+    rewrite_after(filled);
+    EXPECT_TRUE(holds(data_fault(), {fmt::format("./after.tif: 20 cells hold {:g} exactly", value),
+                                     fmt::format("gdal_edit.py -a_nodata {:g} ./after.tif", value), "fill-value"}))
+        << value;
+  }
+  Raster lake = after;
+  const double level = *std::ranges::max_element(after.values) - 5;
+  for (double& z : lake.values) z = std::max(z, level);
+  EXPECT_FALSE(judge_fill_values(lake, "lake.tif")) << "its shores are no jump";
 }
 
 TEST_F(refusal, huge_block_of_nodata) {
