@@ -264,7 +264,7 @@ std::string found_words(const Ensemble& ensemble) {
   const std::string found = members_words(ensemble);
   const std::string cells = fmt::format("{} x {} cells of {:g} m", grid.columns, grid.rows, grid.cell);
   if (ensemble.table.slides) return fmt::format("slides: {}; over {}", found, cells);
-  const std::string words = fmt::format("ensemble: {}; {}; design {}", found, cells, ensemble.table.design);
+  std::string words = fmt::format("ensemble: {}; {}; design {}", found, cells, ensemble.table.design);
   if (!ensemble.table.rows.empty()) return words;
   const double draws = independent_draws(ensemble.table, ensemble.counted());
   return words + fmt::format("; the standard error of a probability of one half is {:.2g}", standard_error(0.5, draws));

@@ -119,7 +119,7 @@ class Variations {
   void drag(Variation& one, bool more) const;
   void weakening(Variation& one, bool fast) const;
   void strength(Variation& one, bool more) const;
-  static constexpr std::pair<std::string_view, void (Variations::*)(Variation&, bool) const> rows_[] = {
+  static constexpr std::pair<std::string_view, void (Variations::*)(Variation&, bool) const> row_makers[] = {
       {"step", &Variations::step},           {"repeat", &Variations::repeat},
       {"modulus", &Variations::modulus},     {"integrator", &Variations::integrator},
       {"transfer", &Variations::transfer},   {"cells", &Variations::cells},
@@ -141,7 +141,7 @@ Variation Variations::made(const std::string& name, const std::string& row) cons
     one.words = fmt::format("elevation models with another error, draw {}", name.substr(row.size() + 1));
   if (row.starts_with("own")) own(one, name);
   const BudgetRow* const of = find_budget_row(row);
-  for (const auto& [known, change] : rows_)
+  for (const auto& [known, change] : row_makers)
     if (row == known) (this->*change)(one, !of->other.empty() && name.ends_with(of->other));
   if (one.words.empty()) one.left_out = "";
   if (row.starts_with("own")) return one;  // the recipe was read with its values
