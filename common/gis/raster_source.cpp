@@ -48,6 +48,13 @@ Dataset open(const fs::path& file, const AsciiGrid& ascii) {
                      first == nullptr ? "Look at it: gdalinfo " + file.string()
                                       : fmt::format("Name one of them in the recipe, such as {}", first)});
   }
+  int bands = 0;
+  for (int b = 1; b <= dataset->GetRasterCount(); ++b)
+    bands += dataset->GetRasterBand(b)->GetColorInterpretation() == GCI_AlphaBand ? 0 : 1;
+  if (bands > 1)
+    throw DataError({fmt::format("{}: it has {} bands", file.string(), bands),
+                     "a picture, or several quantities or times: which one is meant is not said",
+                     fmt::format("Take one of them: gdal_translate -b 1 {} out.tif", file.string())});
   return dataset;
 }
 

@@ -49,6 +49,30 @@ TEST_F(RasterFile, round_trip_keeps_every_bit_and_nodata) {
   }
 }
 
+TEST_F(RasterFile, of_several_bands_is_refused_and_one_with_a_mask_is_not) {
+  const auto write = [&](const std::vector<std::string>& colours) {
+    std::string bands;
+    for (std::size_t b = 0; b < colours.size(); ++b)
+      bands += fmt::format("<VRTRasterBand dataType=\"Byte\" band=\"{}\"><ColorInterp>{}</ColorInterp></VRTRasterBand>",
+                           b + 1, colours[b]);
+    scratch.write("picture.vrt",
+                  "<VRTDataset rasterXSize=\"4\" rasterYSize=\"3\"><GeoTransform>0,10,0,30,0,-10"
+                  "</GeoTransform>" +
+                      bands + "</VRTDataset>");
+  };
+  write({"Red", "Green", "Blue"});
+  EXPECT_EQ(
+      fault("picture.vrt"),
+      "./picture.vrt: it has 3 bands (a picture, or several quantities or times: which one is meant is not said). "
+      "Take one of them: gdal_translate -b 1 ./picture.vrt out.tif");
+  write({"Red", "Green", "Blue", "Alpha"});
+  EXPECT_TRUE(holds(fault("picture.vrt"), {"3 bands"}));
+  write({"Gray", "Alpha"});
+  EXPECT_FALSE(holds(fault("picture.vrt"), {"bands"})) << "its cells are all masked, and that is said";
+  write({"Gray"});
+  EXPECT_EQ(read_raster(scratch / "picture.vrt").grid.columns, 4);
+}
+
 TEST_F(RasterFile, a_large_cog_has_overviews_and_passes_gdals_own_validator) {
   TALUS_NEED_TOOL(TALUS_COG_VALIDATOR);
   Raster raster = random_raster({1300, 1100, 500000, 5500000, 2, epsg(32611)}, 3);

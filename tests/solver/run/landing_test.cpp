@@ -96,7 +96,7 @@ TALUS_IN_EACH_PLACE(Landing);
 /// g is the most that a point can seem to gain. TALUS_PITS: pits along a side, for more landings (165: a million).
 TEST_P(Landing, gives_no_lone_point_energy) {
   const char* wanted = std::getenv("TALUS_PITS");
-  const int across = wanted != nullptr ? static_cast<int>(std::strtol(wanted, nullptr, 10)) : 16;
+  const int across = wanted != nullptr ? static_cast<int>(std::strtol(wanted, nullptr, 10)) : 12;
   for (const auto& [integrator, cfl] : {std::pair{Integrator::explicit_, 0.5},
                                         {Integrator::column_implicit, 0.5},
                                         {Integrator::column_implicit, 1.5}}) {
