@@ -93,7 +93,8 @@ class Landing : public InEachPlace {};
 TALUS_IN_EACH_PLACE(Landing);
 
 /// The grid knows heights to half a cell times the slope, which halves of split points lie apart too: that height times
-/// g is the most that a point can seem to gain. TALUS_PITS: pits along a side, for more landings (165: a million).
+/// g is the most that a point can seem to gain. TALUS_PITS: pits along a side, for more (165: about a million
+/// landings).
 TEST_P(Landing, gives_no_lone_point_energy) {
   const char* wanted = std::getenv("TALUS_PITS");
   const int across = wanted != nullptr ? static_cast<int>(std::strtol(wanted, nullptr, 10)) : 12;
