@@ -80,7 +80,7 @@ MapPolygon attributes_of(const OGRFeature& feature) {
 /// Shapes of a layer that are not what is read from it.
 struct LeftOut {
   std::size_t count = 0;
-  std::string first;  ///< "feature 2, a LINESTRING"
+  std::string first;  ///< "feature 2, LINESTRING"
   std::string kind;   ///< of the last: "LINESTRING"
 
   void add(const OGRFeature& feature, const std::string& other) {
