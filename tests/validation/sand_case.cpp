@@ -240,10 +240,27 @@ Sand column_of(double aspect, double cells) {
   return s;
 }
 
-/// Two profiles, on coarse and on fine cells, and what they are held against.
-struct Profiles {
-  Series coarse, fine;
-  std::vector<Series> laboratories;
+/// One column on cells that are halved twice: its run-outs (d end - d start) / d start, and its profiles.
+struct HalvedCells {
+  static constexpr int levels = 3;
+  std::vector<double> run_outs;
+  std::vector<Series> profiles;
+  Outcome finest;
+
+  /// Where the run-outs lead, as errors of first order fall (Richardson 1911): the toe is a wedge.
+  double limit() const { return run_outs.size() < levels ? nothing : 2 * run_outs[levels - 1] - run_outs[levels - 2]; }
+
+  /// Rows: the run-out of each grid for the eye, its limit by `band`, and what the first halving moves.
+  void judge(Bench& bench, const Band& band) const {
+    for (std::size_t n = 0; n < run_outs.size(); ++n)
+      bench.note(finest, fmt::format("run-out over width, cells halved {} times", n), run_outs[n]);
+    bench.within(finest, "run-out over width, extrapolated", limit(), band.low, band.high);
+    bench.measure(finest, "run-out that halving the coarsest cells moves",
+                  run_outs.size() < 2 ? nothing : (1 + run_outs[1]) / (1 + run_outs[0]) - 1, 0.04);
+    if (profiles.size() == levels)
+      bench.note(finest, "profile that the last halving moves, over height",
+                 profile_difference(profiles[levels - 2], profiles[levels - 1]));
+  }
 };
 
 /// The profiles of columns of some aspect ratios, one panel each.
@@ -251,16 +268,18 @@ class ProfilePicture {
  public:
   explicit ProfilePicture(std::string x_label) : x_label_(std::move(x_label)) {}
 
-  void add(double aspect, Profiles p) {
-    if (p.coarse.x.empty() || p.fine.x.empty()) return;
+  void add(double aspect, const HalvedCells& column, const std::vector<Series>& laboratories) {
+    if (column.profiles.size() < HalvedCells::levels) return;
     Chart panel = plain_chart(fmt::format("aspect ratio {:g}", aspect), x_label_, "z [m]");
     panel.equal_scales = true;
     double far = 0, high = 0;
-    p.coarse.name = "computed";
-    p.coarse.dashed = true;
-    p.fine.name = "computed, cells half as large";
-    panel.series = {p.coarse, p.fine};
-    panel.series.insert(panel.series.end(), p.laboratories.begin(), p.laboratories.end());
+    panel.series = column.profiles;
+    const char* names[] = {"computed", "cells half as large", "a quarter as large"};
+    for (std::size_t n = 0; n < HalvedCells::levels; ++n) {
+      panel.series[n].name = names[n];
+      panel.series[n].dashed = n + 1 < HalvedCells::levels;
+    }
+    panel.series.insert(panel.series.end(), laboratories.begin(), laboratories.end());
     for (const Series& s : panel.series) {
       for (const double x : s.x) far = std::isfinite(x) ? std::max(far, x) : far;
       for (const double y : s.y) high = std::isfinite(y) ? std::max(high, y) : high;
@@ -276,27 +295,25 @@ class ProfilePicture {
   std::vector<Chart> panels_;
 };
 
-/// Columns of one aspect ratio with 16 cells along the height and 32, and what halving the cells moves.
-Collapse halved(Bench& bench, double aspect, Profiles& profiles) {
-  Collapse result;
-  double before = nothing;
-  Series& coarse = profiles.coarse;
-  for (const bool finer : {false, true}) {
-    Sand s = column_of(aspect, 16);
-    if (finer) s.h /= 2;
-    result = collapse(bench, fmt::format("a = {:g}, h = {:.2g} mm", aspect, 1000 * s.h), s, {});
-    const bool ran = result.outcome.ok();
-    if (ran)
-      (finer ? profiles.fine : coarse) = outline_of(result.outcome, result.outcome.frames.size() - 1, s, finer ? 2 : 4);
-    if (finer) {
-      bench.measure(result.outcome, "run-out that halving the cells moves", result.front / before - 1, 0.03);
-      if (ran && !coarse.x.empty())
-        bench.note(result.outcome, "profile moved over height", profile_difference(coarse, profiles.fine));
-    }
-    before = result.front;
+constexpr int profile_colours[HalvedCells::levels] = {5, 4, 2};
+
+/// Columns of one aspect ratio with 16, 32 and 64 cells along the height.
+HalvedCells plane_column(Bench& bench, double aspect) {
+  HalvedCells column;
+  Sand s = column_of(aspect, 16);
+  s.per_cell = 2;
+  for (int level = 0; level < HalvedCells::levels; ++level, s.h /= 2) {
+    column.finest = bench.run(fmt::format("a = {:g}, h = {:.2g} mm", aspect, 1000 * s.h), overrides_of(s));
+    const Outcome& o = column.finest;
+    if (!o.ok()) break;
+    column.run_outs.push_back(run_out_of(o, s));
+    column.profiles.push_back(outline_of(o, o.frames.size() - 1, s, profile_colours[level]));
+    const Band height = band_of(lube_height(aspect), lajeunesse_height(aspect));
+    if (level + 1 == HalvedCells::levels)
+      bench.within(o, "height over width", height_of(o, s), height.low, height.high);
   }
-  profiles.laboratories = channel_laboratories("Lube et al. 2005", column_of(aspect, 16));
-  return result;
+  column.judge(bench, band_of(lube_run_out(aspect), lajeunesse_run_out(aspect)));
+  return column;
 }
 
 /// A quarter of a round column from strips of a sixteenth of its radius along y, each as far along x as the circle,
@@ -336,13 +353,13 @@ void sand_column_aspects(Bench& bench) {
     }
     return line;
   };
-  Series ours = marks_of("computed, some 32 cells along the height", 2, 10);
+  Series ours = marks_of("computed, extrapolated from 16, 32 and 64 cells along the height", 2, 10);
   ProfilePicture pictures("x [m]");
   for (const double aspect : {0.5, 1.0, 1.5, 3.0, 5.0, 7.0, 9.0}) {
-    Profiles profiles;
-    const Collapse c = halved(bench, aspect, profiles);
-    if (aspect == 0.5 || aspect == 1 || aspect == 3 || aspect == 7) pictures.add(aspect, profiles);
-    ours.add(aspect, c.front / Sand{}.width - 1);
+    const HalvedCells column = plane_column(bench, aspect);
+    if (aspect == 0.5 || aspect == 1 || aspect == 3 || aspect == 7)
+      pictures.add(aspect, column, channel_laboratories("Lube et al. 2005", column_of(aspect, 16)));
+    ours.add(aspect, column.limit());
   }
   Series wide = draw("Lajeunesse et al. 2005", lajeunesse_run_out, 0.4, 0.1, 90);
   wide.colour = 3;
@@ -356,24 +373,23 @@ void sand_column_aspects(Bench& bench) {
 void round_sand_columns(Bench& bench) {
   ProfilePicture pictures("distance from the axis [m]");
   for (const double aspect : {0.5, 1.0, 2.0, 4.0}) {
-    const Band run_out = band_of(round_run_out(aspect), nothing), height = band_of(round_height(aspect), nothing);
-    double before = nothing;
-    Profiles profiles{{}, {}, {laboratory("Lube et al. 2004", Sand{}, round_run_out(aspect), round_height(aspect), 1)}};
-    for (const double cells : {8.0, 16.0}) {
-      Sand s = column_of(aspect, static_cast<int>(std::lround(cells * std::max(1.0, aspect))));
-      s.per_cell = s.h > s.width / 8 ? 4 : 3;
-      if (std::lround(s.width / s.h) % 16 != 0) s.per_cell = 4;
-      const Outcome o =
+    HalvedCells column;
+    Sand s = column_of(aspect, 8 * std::max(1.0, aspect));
+    s.per_cell = 2;
+    for (int level = 0; level < HalvedCells::levels; ++level, s.h /= 2) {
+      column.finest =
           bench.run(fmt::format("a = {:g}, h = radius / {}", aspect, std::lround(s.width / s.h)), round_column(s));
-      const double front = o.ok() ? front_of_quarter(o.last(), s) / s.width - 1 : nothing;
-      bench.within(o, "run-out over radius", front, run_out.low, run_out.high);
-      if (std::isfinite(height.low)) bench.within(o, "height over radius", height_of(o, s), height.low, height.high);
-      if (std::isfinite(before))
-        bench.measure(o, "run-out that halving the cells moves", (1 + front) / (1 + before) - 1, 0.03);
-      before = front;
-      if (o.ok()) (cells < 16 ? profiles.coarse : profiles.fine) = outline_of_quarter(o.last(), s, cells < 16 ? 4 : 2);
+      const Outcome& o = column.finest;
+      if (!o.ok()) break;
+      column.run_outs.push_back(front_of_quarter(o.last(), s) / s.width - 1);
+      column.profiles.push_back(outline_of_quarter(o.last(), s, profile_colours[level]));
+      const Band height = band_of(round_height(aspect), nothing);
+      if (level + 1 == HalvedCells::levels && std::isfinite(height.low))
+        bench.within(o, "height over radius", height_of(o, s), height.low, height.high);
     }
-    pictures.add(aspect, profiles);
+    column.judge(bench, band_of(round_run_out(aspect), nothing));
+    pictures.add(aspect, column,
+                 {laboratory("Lube et al. 2004", Sand{}, round_run_out(aspect), round_height(aspect), 1)});
   }
   bench.picture("A3c-profiles", pictures.png());
 }
