@@ -47,8 +47,10 @@ SettledOnce settled_once(const Plan& base) {
   const SolveOptions &asked = base.asked, &used = base.options;
   if (leaves_stiffness(asked)) settled.stiffness.emplace().modulus = used.material.youngs_modulus;
   if (asked.integrator == Integrator::automatic)
-    settled.steps = StepChoice{
-        .flow = used.flow, .cfl = used.cfl, .rests = used.integrator == Integrator::automatic, .reasons = {}};
+    settled.steps = StepChoice{.flow = used.flow,
+                               .cfl = used.step_over_cfl(),
+                               .rests = used.integrator == Integrator::automatic,
+                               .reasons = {}};
   return settled;
 }
 

@@ -50,7 +50,7 @@ std::vector<std::string> settled_values(const SolveOptions& asked, const SolveOp
   if (asked.integrator == Integrator::automatic && settled.integrator != Integrator::automatic) {
     values.push_back(std::string("solve.integrator=") +
                      (settled.integrator == Integrator::explicit_ ? "explicit" : "column-implicit"));
-    values.push_back(set_to("solve.cfl", settled.cfl));
+    values.push_back(set_to("solve.cfl", settled.step_over_cfl()));
   }
   return values;
 }
@@ -176,9 +176,9 @@ void Variations::own(Variation& one, const std::string& name) const {
 void Variations::step(Variation& one, bool) const {
   const StepAbilities able = abilities_of(base_.integrator);
   if (able.obey_cfl) {
-    one.options.cfl *= step_factor;
+    one.options.cfl = step_factor * base_.step_over_cfl();
     one.options.largest_step *= step_factor;
-    one.values.push_back(set_to("solve.cfl", one.options.cfl));
+    one.values.push_back(set_to("solve.cfl", *one.options.cfl));
     one.values.push_back(set_to("solve.largest_step_s", one.options.largest_step));
   }
   if (able.solve_systems) {
@@ -218,9 +218,9 @@ void Variations::integrator(Variation& one, bool) const {
   if (!is_explicit && base_.flow_integrator() != Integrator::column_implicit) return;
   const Integrator other = is_explicit ? Integrator::column_implicit : Integrator::explicit_;
   (base_.integrator == Integrator::automatic ? one.options.flow : one.options.integrator) = other;
-  if (!is_explicit) one.options.cfl = std::min(base_.cfl, default_cfl);  // longer ones need not be stable
+  one.options.cfl = std::min(base_.step_over_cfl(), default_cfl);  // longer explicit ones need not be stable
   one.values.emplace_back(is_explicit ? "solve.integrator=column-implicit" : "solve.integrator=explicit");
-  one.values.push_back(set_to("solve.cfl", one.options.cfl));
+  one.values.push_back(set_to("solve.cfl", *one.options.cfl));
   one.words = is_explicit ? "inertia implicit along columns instead of explicit steps"
                           : "explicit steps instead of inertia implicit along columns";
 }

@@ -61,8 +61,9 @@ void SchemeOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "stress_update", stress_update, {{"usl", StressUpdate::last}, {"musl", StressUpdate::modified}},
                  "stress from the grid's new velocity (usl), or from the points' mapped back (musl)");
   v.number("damping", damping, recipe::Range{0, 1, false, true}, "local non-viscous damping factor (Cundall)");
-  v.number("cfl", cfl, recipe::Range{0, 1.5, true, false},
-           "step size over the CFL step; 0.8 at most, with column-implicit steps 1.5");
+  v.optional_number("cfl", cfl, recipe::Range{0, 1.5, true, false},
+                    "step size over the CFL step, 0.8 at most, with column-implicit steps 1.5; none: 0.5, "
+                    "column-implicit as long as they are stable");
   v.number("largest_step_s", largest_step, recipe::positive, "upper bound of the step size");
 }
 

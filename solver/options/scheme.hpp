@@ -35,7 +35,7 @@ enum class Preset { none, reference };
 /// The keys of [solve] for what a run simulates.
 struct TimeOptions {
   Preset preset = Preset::none;
-  Integrator integrator = Integrator::explicit_;
+  Integrator integrator = Integrator::automatic;
   std::optional<double> accuracy;           ///< "auto": share of the deposit that may lie elsewhere
   Integrator flow = Integrator::explicit_;  ///< "auto": steps of a flow; no key, settle_steps() chooses
   int gravity_loading_steps = 0;            ///< quasi-static steps before the start
@@ -55,7 +55,7 @@ enum class StressUpdate { last, modified };  ///< USL, MUSL
 /// The share of a step's change of velocity that springs between layers feel (T6a); below 0.25 steps are unstable.
 inline constexpr double column_kappa = 0.3;
 
-/// The step over the CFL step, unless the recipe says otherwise.
+/// The explicit step over the CFL step, unless the recipe says otherwise.
 inline constexpr double default_cfl = 0.5;
 
 /// The keys of [solve] for the numerical scheme that all integrators share.
@@ -66,9 +66,9 @@ struct SchemeOptions {
   Transfer transfer = Transfer::apic;
   std::optional<double> transfer_time;  ///< [s]; none: transfer_time_of()
   StressUpdate stress_update = StressUpdate::last;
-  double damping = 0;  ///< Cundall's local factor
-  double cfl = default_cfl;
-  double largest_step = 1;  ///< [s]
+  double damping = 0;         ///< Cundall's local factor
+  std::optional<double> cfl;  ///< none: SolveOptions::step_over_cfl()
+  double largest_step = 1;    ///< [s]
 
   /// Whether particles carry the affine part of their velocity.
   bool affine() const { return transfer == Transfer::apic; }

@@ -81,11 +81,15 @@ void need_separation(recipe::Visitor& v, const SolveOptions& o) {
 /// Declares what column-implicit steps need, and what needs them.
 void need_columns(recipe::Visitor& v, const SolveOptions& o) {
   const bool by_columns = abilities_of(o.asked_integrator()).solve_columns;
-  v.needs(by_columns || o.cfl <= most_explicit_cfl,
-          {fmt::format("[solve] cfl = {:g} is too large for this integrator", o.cfl),
-           "points that have a cell to themselves would be thrown off", "Take 0.8 at most"});
-  v.needs(!by_columns || o.cfl <= longest_by_columns(o),
-          {fmt::format("[solve] cfl = {:g} is too large for a material that holds tension", o.cfl),
+  const double cfl = o.cfl.value_or(0);
+  v.needs(by_columns || cfl <= most_explicit_cfl,
+          {fmt::format(
+               "[solve] cfl = {:g} is too large for {}", cfl,
+               o.integrator == Integrator::automatic ? "explicit steps, which \"auto\" may take" : "this integrator"),
+           "points that have a cell to themselves would be thrown off",
+           "Take 0.8 at most, leave cfl out, or take integrator = \"column-implicit\""});
+  v.needs(!by_columns || cfl <= longest_by_columns(o),
+          {fmt::format("[solve] cfl = {:g} is too large for a material that holds tension", cfl),
            "corners of a body that keeps its shape would be thrown off", "Take 1 at most"});
   const Hindrance beyond = by_columns ? beyond_columns(o) : Hindrance{};
   v.needs(!beyond, {"[solve] integrator = \"column-implicit\" does not go with " + beyond.key, beyond.reason,
@@ -100,7 +104,7 @@ void need_preset(recipe::Visitor& v, const SolveOptions& o) {
     v.needs(free || left_out, {fmt::format("[solve] {} beside preset = \"reference\"", key), "the preset sets it",
                                "Leave one of them out"});
   };
-  sets("integrator", o.integrator != Integrator::column_implicit && o.integrator != Integrator::automatic);
+  sets("integrator", o.integrator != Integrator::column_implicit && o.integrator != Integrator::explicit_);
   sets("shape", o.shape == ShapeKind::quadratic || o.shape == ShapeKind::linear);
   sets("transfer_time_s", !o.transfer_time);
 }
@@ -139,9 +143,14 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "base", base, "the bed under it");
   need_separation(v, *this);
   need_columns(v, *this);
-  v.needs(!accuracy || cfl == default_cfl,
+  v.needs(!accuracy || !cfl,
           {"[solve] cfl beside accuracy", "it follows from accuracy", "Leave it out, or leave accuracy out"});
   need_preset(v, *this);
+}
+
+double SolveOptions::step_over_cfl() const {
+  const bool by_columns = abilities_of(flow_integrator()).solve_columns;
+  return cfl.value_or(by_columns ? longest_by_columns(*this) : default_cfl);
 }
 
 SolveOptions with_preset(SolveOptions o) {

@@ -43,6 +43,8 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
     return dynamic ? Integrator::newmark : integrator;
   }
   Integrator flow_integrator() const { return integrator == Integrator::automatic ? flow : integrator; }
+  /// The length of a flow's steps over the CFL step: as given, or what those steps take by themselves.
+  double step_over_cfl() const;
 
   /// Declares all keys of [solve] and its tables with defaults, help and what they need of one another.
   void describe(recipe::Visitor& v);

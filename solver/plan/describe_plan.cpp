@@ -24,9 +24,10 @@ struct Adder {
 };
 
 std::string flow_words(const SolveOptions& o) {
-  if (o.flow_integrator() == Integrator::explicit_) return fmt::format("explicit, {:g} of the CFL step", o.cfl);
+  if (o.flow_integrator() == Integrator::explicit_)
+    return fmt::format("explicit, {:g} of the CFL step", o.step_over_cfl());
   return fmt::format("explicit, inertia implicit along columns (kappa = {:g}), {:g} of the CFL step of the cells",
-                     column_kappa, o.cfl);
+                     column_kappa, o.step_over_cfl());
 }
 
 std::string integrator_words(const SolveOptions& o) {

@@ -70,10 +70,13 @@ namespace {
 
 // Shares of the CFL step that keep to an accuracy, over that accuracy, and their limits
 // (docs/notes/integrators.md).
-constexpr double explicit_per_accuracy = 80, rough_per_accuracy = 50, columns_per_accuracy = 100;
-constexpr double most_explicit = 0.8, most_rough = 0.5, least_cfl = 0.1;
-constexpr double roughest = 0.01;  // bend of the ground over the thickness up to which long steps keep to it
-constexpr double kept_on_rough_ground = 0.05;  // accuracy down to which steps keep to it beyond that
+struct Lengths {
+  double per_accuracy, most;
+};
+constexpr Lengths explicit_steps{80, 0.8}, rough_explicit_steps{50, 0.5}, rough_column_steps{10, 0.5};
+constexpr double columns_per_accuracy = 100, least_cfl = 0.1;
+constexpr double roughest = 0.01;              // bend of the ground over the thickness from which long steps move flows
+constexpr double kept_on_rough_ground = 0.05;  // accuracy down to which steps keep to it there
 
 /// A way of stepping a flow: the share of the CFL step that it may take, and 1 over the CFL step [1/s].
 struct Way {
@@ -96,24 +99,15 @@ double crossing_rate(const Domain& domain, const SolveOptions& o, Integrator int
   return fastest_wave(o) * std::sqrt(2 * across * across + by_layers) + pace.speed * (2 * across + up);
 }
 
-Way way_of(const Domain& domain, const SolveOptions& o, Integrator integrator, const Pace& pace, bool rough) {
+Way way_of(const Domain& domain, SolveOptions o, Integrator integrator, const Pace& pace, bool rough) {
   const bool columns = abilities_of(integrator).solve_columns;
-  const double most = columns ? longest_by_columns(o) : rough ? most_rough : most_explicit;
-  const double per_accuracy = columns ? columns_per_accuracy : rough ? rough_per_accuracy : explicit_per_accuracy;
-  return {integrator, o.accuracy ? std::clamp(per_accuracy * *o.accuracy, least_cfl, most) : o.cfl,
-          crossing_rate(domain, o, integrator, pace)};
-}
-
-/// What is in the way of columns in this scene, in words; empty: nothing. `bend`: of the ground, over the thickness.
-std::string against_columns(const SolveOptions& o, double bend) {
-  if (const Hindrance beyond = beyond_columns(o)) return beyond.key + ": " + beyond.reason;
-  if (bend > roughest)
-    return fmt::format(
-        "within a cell the ground bends by {:.2g} of the thickness of what is released, and above {:g} steps by "
-        "columns "
-        "lose it",
-        bend, roughest);
-  return {};
+  o.flow = integrator;
+  Lengths lengths = rough ? rough_explicit_steps : explicit_steps;
+  if (columns) lengths = rough ? rough_column_steps : Lengths{columns_per_accuracy, longest_by_columns(o)};
+  double cfl = o.accuracy ? std::max(lengths.per_accuracy * *o.accuracy, least_cfl) : o.step_over_cfl();
+  if (!o.cfl) cfl = std::min(cfl, lengths.most);
+  if (columns && released_alone(domain, o) >= noticed_alone) cfl = std::min(cfl, longest_unforgotten);
+  return {integrator, cfl, crossing_rate(domain, o, integrator, pace)};
 }
 
 std::string comparison(const Way& taken, const Way& other) {
@@ -127,16 +121,34 @@ std::string comparison(const Way& taken, const Way& other) {
 
 }  // namespace
 
+double released_alone(const Domain& domain, const SolveOptions& o) {
+  const auto forgets = [](const MaterialOptions& m) { return !m.holds_tension(); };
+  if (o.shape == ShapeKind::linear || !o.any_material(forgets)) return 0;
+  const Raster& release = domain.release_thickness;
+  const auto filled = [&](int i, int j) {
+    return i >= 0 && j >= 0 && i < release.grid.columns && j < release.grid.rows && release.at(i, j) > 0;
+  };
+  double alone = 0, all = 0;
+  each_cell(release.grid, [&](int i, int j) {
+    if (!filled(i, j)) return;
+    all += release.at(i, j);
+    if (!filled(i - 1, j) && !filled(i + 1, j) && !filled(i, j - 1) && !filled(i, j + 1)) alone += release.at(i, j);
+  });
+  return all > 0 ? alone / all : 0;
+}
+
 StepChoice choose_steps(const Domain& domain, const SolveOptions& o, const SpeedBound& bound) {
   const Pace pace{.speed = bound.speed / 2,
                   .steep = o.mapping == Mapping::terrain_following ? steepness(domain, bound.line) : 1};
   const double bend = bend_over_thickness(domain, bound.line);
-  const Way by_points = way_of(domain, o, Integrator::explicit_, pace, bend > roughest),
-            by_columns = way_of(domain, o, Integrator::column_implicit, pace, false);
+  const bool rough = bend > roughest;
+  const Way by_points = way_of(domain, o, Integrator::explicit_, pace, rough),
+            by_columns = way_of(domain, o, Integrator::column_implicit, pace, rough);
   StepChoice choice;
-  if (const std::string why_not = against_columns(o, bend); !why_not.empty()) {
+  if (const Hindrance beyond = beyond_columns(o)) {
     choice.cfl = by_points.cfl;
-    choice.reasons.push_back(fmt::format("a flow takes explicit steps of {:g} CFL: {}", choice.cfl, why_not));
+    choice.reasons.push_back(
+        fmt::format("a flow takes explicit steps of {:g} CFL: {}: {}", choice.cfl, beyond.key, beyond.reason));
   } else {
     const bool columns = by_columns.work() < by_points.work();
     const Way& taken = columns ? by_columns : by_points;
@@ -144,6 +156,11 @@ StepChoice choose_steps(const Domain& domain, const SolveOptions& o, const Speed
     choice.cfl = taken.cfl;
     choice.reasons.push_back(comparison(taken, columns ? by_points : by_columns));
   }
+  if (rough && !o.cfl)
+    choice.reasons.push_back(
+        fmt::format("a flow takes no longer ones, since within a cell the ground bends by {:.2g} of the thickness of "
+                    "what is released, and above {:g} of it they move more than a tenth of the deposit",
+                    bend, roughest));
   const Hindrance moving = beyond_rest(o);
   choice.rests = !moving;
   choice.reasons.push_back(moving ? fmt::format("no implicit steps at rest: {}, {}", moving.key, moving.reason)
@@ -157,12 +174,9 @@ void warn_of_unkept_accuracy(const Domain& domain, const SolveOptions& o, const 
   if (bend <= roughest) return;
   warn("unkept-accuracy",
        fmt::format("[solve] accuracy = {:g} is not kept on this ground: within a cell it bends by {:.2g} of the "
-                   "thickness of what "
-                   "is released, and beyond {:g} of it explicit steps of a tenth of the CFL step, instead of a "
-                   "quarter, moved 5 to "
-                   "8 % of the deposits measured. Footprints and speeds hold better; accuracy = {:g} asks for no more "
-                   "than can be "
-                   "had",
+                   "thickness of what is released, and beyond {:g} of it flows are chaotic: two runs that differ in "
+                   "the last digit moved up to 9 % of the deposits measured. Footprints and speeds hold better; "
+                   "accuracy = {:g} asks for no more than can be had",
                    *o.accuracy, bend, roughest, kept_on_rough_ground),
        {{"curvature_over_thickness", bend, "1"}});
 }
@@ -177,7 +191,7 @@ SolveOptions with_steps(SolveOptions o, const StepChoice& choice) {
 
 SolveOptions settle_steps(const Domain& domain, SolveOptions o, const SpeedBound& bound,
                           std::vector<std::string>& reasons) {
-  if (o.integrator != Integrator::automatic) return o;
+  if (o.integrator != Integrator::automatic || o.stability.factor_of_safety) return o;
   const StepChoice choice = choose_steps(domain, o, bound);
   for (const std::string& reason : choice.reasons) reasons.push_back("steps: " + reason);
   return with_steps(std::move(o), choice);

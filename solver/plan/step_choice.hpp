@@ -45,7 +45,14 @@ struct StepChoice {
   std::vector<std::string> reasons;         ///< a sentence each
 };
 
-/// The allowed steps that take the least work at the accuracy asked for; without one, at the recipe's own `cfl`.
+// From this share of the release on, columns one cell wide with nothing beside them count; longer column-implicit steps
+// than these let them forget part of their stress (T6d).
+inline constexpr double noticed_alone = 0.01, longest_unforgotten = 0.5;
+/// The share of the release in such columns, where column-implicit steps can let them forget it; else 0 [-].
+double released_alone(const Domain& domain, const SolveOptions& options);
+
+/// The allowed steps that take the least work at the accuracy asked for; without one, each as long as the recipe says,
+/// or as it takes by itself.
 StepChoice choose_steps(const Domain& domain, const SolveOptions& options, const SpeedBound& bound);
 
 /// Warns of an `accuracy` that no steps keep, on ground that is rough for the flow (docs/notes/integrators.md).

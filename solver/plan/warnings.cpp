@@ -95,33 +95,17 @@ void warn_of_material(const MaterialOptions& material, const std::string& table,
   });
 }
 
-/// The share of the release in cells with nothing beside them, neither along x nor along y [-].
-double released_alone(const Domain& domain) {
-  const Raster& release = domain.release_thickness;
-  const auto filled = [&](int i, int j) {
-    return i >= 0 && j >= 0 && i < release.grid.columns && j < release.grid.rows && release.at(i, j) > 0;
-  };
-  double alone = 0, all = 0;
-  each_cell(release.grid, [&](int i, int j) {
-    if (!filled(i, j)) return;
-    all += release.at(i, j);
-    if (!filled(i - 1, j) && !filled(i + 1, j) && !filled(i, j - 1) && !filled(i, j + 1)) alone += release.at(i, j);
-  });
-  return all > 0 ? alone / all : 0;
-}
-
 /// Of matter that column-implicit steps let forget its stress (T6d).
 void warn_of_lone_columns(const Domain& domain, const SolveOptions& o) {
-  constexpr double said_from = 0.01, nothing_forgotten = 0.5;
-  if (o.integrator != Integrator::column_implicit || o.shape == ShapeKind::linear || o.cfl <= nothing_forgotten) return;
-  const auto forgets = [](const MaterialOptions& m) { return !m.holds_tension(); };
-  const double share = released_alone(domain);
-  if (share < said_from || !o.any_material(forgets)) return;
+  const double cfl = o.step_over_cfl();
+  if (!abilities_of(o.flow_integrator()).solve_columns || cfl <= longest_unforgotten) return;
+  const double share = released_alone(domain, o);
+  if (share < noticed_alone) return;
   warn("lone-columns",
        fmt::format("{:.2g} % of the release are columns one cell wide with nothing beside them. With cfl = {:g}, above "
                    "{:g}, column-implicit steps let such columns forget part of their stress, and they do not stand "
                    "without walls. Take cells of half the width, or [solve] cfl = {:g}",
-                   100 * share, o.cfl, nothing_forgotten, nothing_forgotten),
+                   100 * share, cfl, longest_unforgotten, longest_unforgotten),
        {{"share", share, "1"}});
 }
 

@@ -143,7 +143,7 @@ void RunLoop::count(const BatchReport& batch) {
   memory_.outflow_volume += batch.outflow_volume;
   memory_.outflow_count += batch.outflow_count;
   if (batch.clock.alarms.halt == failed)
-    refuse_lost_point(batch.clock, stepper_.solver().state().points, scene().map, options().cfl);
+    refuse_lost_point(batch.clock, stepper_.solver().state().points, scene().map, options().step_over_cfl());
   watch_.look(batch);
   if (batch.stats.newton == 0) return;
   memory_.newton += batch.stats.newton;

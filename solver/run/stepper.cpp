@@ -165,7 +165,7 @@ void StepWatch::refuse(const BatchReport& batch, double step) const {
                         fmt::format("{}; the fastest point runs at {:.3g} m/s across cells of {:g} m", why, fast, cell),
                         fmt::format("The mass bursts: lower cfl (now {:g}), and look at loads, walls and the speed at "
                                     "the start",
-                                    options_.cfl)});
+                                    options_.step_over_cfl())});
 }
 
 void StepWatch::warn_of_short_steps(const Clock& clock, double step) {

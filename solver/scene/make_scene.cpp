@@ -245,7 +245,7 @@ FirstWaves first_waves(const SolveOptions& options) {
 
 double explicit_step(const Scene& scene, const SolveOptions& options, double speed) {
   const double rate = first_rate(scene.grid, scene.terrain, scene.points, first_waves(options), speed);
-  return std::min(options.cfl / rate, options.largest_step);
+  return std::min(options.step_over_cfl() / rate, options.largest_step);
 }
 
 double first_rate(const GridShape& shape, const TerrainTables& terrain, const ParticleState& points,

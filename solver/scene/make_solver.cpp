@@ -19,7 +19,7 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings, 
   state.points = std::move(points);
   const auto cells = scene.map.count();
   for_each_running_map([&](const RunningMap& map, auto& values) { values.assign(cells, map.start); }, state.maps);
-  state.clock.control.courant = settings.cfl;
+  state.clock.control.courant = settings.cfl.value_or(default_cfl);
   state.clock.control.longest = settings.largest_step;
   state.clock.motion_maps.column_spacing = scene.grid.spacing;
   state.clock.budget.is_kept = settings.energy_budget ? 1 : 0;

@@ -50,6 +50,7 @@ PlaneWall make_wall(const WallOptions& o) {
 
 IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   IntegratorSettings s{o, o, o};
+  s.cfl = o.step_over_cfl();
   s.needs = needs_of(o);
   s.fastest_wave = fastest_wave(o);
   s.kappa = abilities_of(o.flow_integrator()).solve_columns ? column_kappa : 0;

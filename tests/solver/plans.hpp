@@ -8,8 +8,9 @@
 namespace talus::solver::testing {
 
 /// The plan of a scene with its options as they are, whose numbers nobody checks.
-inline std::shared_ptr<const Plan> drafted(const Domain& domain, const SolveOptions& options) {
-  return std::make_shared<const Plan>(draft_plan(std::make_shared<const Domain>(domain), options, Settle::done));
+inline std::shared_ptr<const Plan> drafted(const Domain& domain, const SolveOptions& options,
+                                           Settle settle = Settle::done) {
+  return std::make_shared<const Plan>(draft_plan(std::make_shared<const Domain>(domain), options, settle));
 }
 
 /// A plan without its points: all that settling, warnings and advice look at.

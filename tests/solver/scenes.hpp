@@ -108,14 +108,16 @@ inline void release(Domain& d, std::array<int, 2> columns, std::array<int, 2> ro
 
 inline double total(const Energies& e) { return e.kinetic + e.potential + e.elastic; }
 
+/// All steps half as long as the CFL step.
 inline SolveOptions stepping_by(Integrator integrator) {
   SolveOptions o;
   o.integrator = integrator;
+  o.cfl = default_cfl;
   return o;
 }
 
 /// Hencky's law with a modulus of elasticity [Pa].
-inline SolveOptions elastic_options(double youngs_modulus, Integrator integrator = SolveOptions{}.integrator) {
+inline SolveOptions elastic_options(double youngs_modulus, Integrator integrator = Integrator::explicit_) {
   SolveOptions o = stepping_by(integrator);
   o.material.model = MaterialModel::hencky;
   o.material.youngs_modulus = youngs_modulus;

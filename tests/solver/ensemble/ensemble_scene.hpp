@@ -35,7 +35,7 @@ inline std::string heap_recipe(const std::string& more = "", bool deterministic 
 /// The recipe of a block that slides to rest on the incline, with lines of its material.
 inline std::string block_recipe(const std::string& material) {
   const double across = start_speed * std::cos(slope), down = -start_speed * std::sin(slope);
-  return "[solve]\nend_time_s = 3.0\nintegrator = \"column-implicit\"\ninitial_velocity_m_s = [" +
+  return "[solve]\nend_time_s = 3.0\nintegrator = \"column-implicit\"\ncfl = 0.5\ninitial_velocity_m_s = [" +
          std::to_string(across) + ", 0.0, " + std::to_string(down) + "]\n[solve.material]\n" + material +
          "youngs_modulus_Pa = 1e8\n[solve.base]\nlaw = \"coulomb\"\nfriction_angle_deg = 25.0\n";
 }

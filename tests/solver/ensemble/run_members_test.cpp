@@ -59,7 +59,7 @@ void expect_members_as_alone(const SmallEnsemble& ensemble, On on) {
     // Alone: the recipe with the member's values, on all threads.
     const SolveOptions options =
         options_of(ensemble.recipe.with(ensemble.table.values_of(k, "solve.")), ensemble.scratch.folder());
-    Simulation(drafted(*own->domain, options), make_device(on), files, "").run("heap", "heap");
+    Simulation(drafted(*own->domain, options, Settle::as_asked), make_device(on), files, "").run("heap", "heap");
     const talus::Run alone = read_run(files.run);
     for (const MapField& field : map_fields) {
       if (field.optional) continue;

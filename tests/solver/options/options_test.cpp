@@ -178,7 +178,8 @@ TEST(SolveOptions, a_key_that_is_gone_is_refused_with_advice) {
 
 TEST(SolveOptions, an_accuracy_is_for_the_integrator_that_chooses) {
   EXPECT_EQ(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.01"), "");
-  expect_words(faults("[solve]\naccuracy=0.01"),
+  EXPECT_EQ(faults("[solve]\naccuracy=0.01"), "") << "by itself";
+  expect_words(faults("[solve]\nintegrator=\"explicit\"\naccuracy=0.01"),
                "[solve] accuracy has no effect (it belongs to integrator = \"auto\")");
   expect_words(faults("[solve]\nintegrator=\"auto\"\naccuracy=0.5"), "accuracy = 0.5");
 }
@@ -190,7 +191,10 @@ TEST(SolveOptions, what_follows_from_accuracy_is_not_given_beside_it) {
 
 TEST(SolveOptions, steps_longer_than_lone_points_bear_are_for_columns) {
   EXPECT_EQ(faults("[solve]\ncfl=0.8"), "");
-  expect_words(faults("[solve]\ncfl=0.9"), "[solve] cfl = 0.9 is too large");
+  expect_words(faults("[solve]\ncfl=0.9"),
+               "[solve] cfl = 0.9 is too large for explicit steps, which \"auto\" may take");
+  expect_words(faults("[solve]\ncfl=0.9\nintegrator=\"explicit\""),
+               "[solve] cfl = 0.9 is too large for this integrator");
   EXPECT_EQ(faults("[solve]\ncfl=1.5\nintegrator=\"column-implicit\""), "");
   EXPECT_NE(faults("[solve]\ncfl=1.6\nintegrator=\"column-implicit\""), "");
 }
@@ -207,8 +211,21 @@ TEST(SolveOptions, longer_steps_by_columns_are_for_what_holds_no_tension) {
   EXPECT_TRUE(said("[[solve.part]]\nrelease=\"block\"\nmodel=\"neo-hookean\""));
 }
 
+TEST(SolveOptions, steps_are_as_long_as_their_kind_bears) {
+  SolveOptions o;
+  EXPECT_EQ(o.step_over_cfl(), 0.5) << "what auto begins with";
+  o.integrator = Integrator::column_implicit;
+  EXPECT_EQ(o.step_over_cfl(), 1.5);
+  o.material.model = MaterialModel::hencky;
+  EXPECT_EQ(o.step_over_cfl(), 1) << "it holds tension";
+  o.cfl = 0.4;
+  EXPECT_EQ(o.step_over_cfl(), 0.4);
+}
+
 TEST(SolveOptions, what_goes_together_is_taken) {
-  EXPECT_EQ(faults("[solve]\n[solve.implicit]\nlinear_solver=\"cholesky\"\n[[solve.obstacle]]\nname=\"a\""), "");
+  EXPECT_EQ(faults("[solve]\nintegrator=\"explicit\"\n[solve.implicit]\nlinear_solver=\"cholesky\"\n[[solve.obstacle]]"
+                   "\nname=\"a\""),
+            "");
 }
 
 TEST(SolveOptions, every_integrator_says_what_its_steps_can_do) {
@@ -244,7 +261,7 @@ std::vector<std::string> materials_of_the_guide() {
 
 TEST(SolveOptions, what_a_preset_sets_is_not_given_otherwise_beside_it) {
   for (const auto& [key, given] : {std::pair{"integrator", "integrator = \"column-implicit\""},
-                                   {"integrator", "integrator = \"auto\""},
+                                   {"integrator", "integrator = \"explicit\""},
                                    {"shape", "shape = \"gimp\""},
                                    {"transfer_time_s", "transfer_time_s = 0.5"}}) {
     EXPECT_EQ(

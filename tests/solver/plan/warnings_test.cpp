@@ -129,7 +129,6 @@ TEST(Warnings, count_columns_one_cell_wide_that_forget_their_stress) {
   for (int i = 3; i < 7; ++i) d.release_thickness.at(i, 3) = d.release_thickness.at(i, 9) = 2;
   SolveOptions o = mass_on_bed(30, 20);
   o.integrator = Integrator::column_implicit;
-  o.cfl = 1.5;
   EXPECT_TRUE(warnings(o, d).empty()) << "a ridge has company";
   d.release_thickness.at(9, 6) = 4;
   EXPECT_TRUE(test::holds(warning(o, d), {"20 % of the release", "cfl = 1.5, above 0.5"}));

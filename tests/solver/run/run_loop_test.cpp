@@ -62,7 +62,7 @@ TEST(Stepper, meets_events_and_knows_its_step_over_the_cfl_step) {
     EXPECT_EQ(stepper.time(), 0.02);
     EXPECT_EQ(stepper.solver().clock().time, 0.02);
     EXPECT_GT(stepper.over_cfl(), 0);
-    EXPECT_LE(stepper.over_cfl(), o.cfl * (1 + 1e-6));
+    EXPECT_LE(stepper.over_cfl(), o.step_over_cfl() * (1 + 1e-6));
   }
 }
 
