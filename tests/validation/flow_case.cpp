@@ -92,6 +92,12 @@ struct CapMotion {
   double way = nothing;                 // of the centre [m]
 };
 
+/// Down the slope [m]: a cap that thins sinks towards the plane besides.
+double way_of_centre(const Outcome& o) {
+  const auto first = centre_of(o.first()), last = centre_of(o.last());
+  return (last[0] - first[0]) * std::cos(cap.slope) - (last[2] - first[2]) * std::sin(cap.slope);
+}
+
 CapMotion motion_of(const Outcome& o, const ParabolicCap::State& state) {
   CapMotion m;
   for (std::size_t p = 0; p < o.last().size(); ++p) {
@@ -102,7 +108,7 @@ CapMotion motion_of(const Outcome& o, const ParabolicCap::State& state) {
     m.expected.push_back(state.speed + (x[0] * std::cos(cap.slope) + (500 - x[2]) * std::sin(cap.slope) - state.way) *
                                            state.spread / state.width);
   }
-  m.way = (centre_of(o.last())[0] - centre_of(o.first())[0]) / std::cos(cap.slope);
+  m.way = way_of_centre(o);
   return m;
 }
 
@@ -155,7 +161,7 @@ Series slick_cap(Bench& bench, const std::map<int, Overrides>& scenes) {
       const auto state = slick.at(o.last().time);
       thickness = norms(o.run.frames.thickness.back(),
                         at_centres(o.run.maps.grid, [&](double x, double y) { return upright(state, x, y); }).values);
-      way = (centre_of(o.last())[0] - centre_of(o.first())[0]) / std::cos(cap.slope) / state.way - 1;
+      way = way_of_centre(o) / state.way - 1;
     }
     bench.note(o, "thickness, root mean square", thickness.mean);
     bench.measure(o, "way of the centre, over the reference's less one", way, 0.002);
