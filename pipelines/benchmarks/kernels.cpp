@@ -83,6 +83,7 @@ Scene block(double points, const SolveOptions& options) {
 
 SolveOptions options_for(const KernelSetting& k) {
   SolveOptions o;
+  o.integrator = Integrator::explicit_;
   o.shape = k.shape;
   o.precision = k.precision;
   o.material.density = density;
