@@ -10,7 +10,9 @@
 
 namespace talus {
 
-/// The words of a line in lower case, without comment (from # on) and quotes; commas, semicolons and blanks part them.
+/// The words of a line in lower case, without byte order mark, comment (from # on) and quotes; commas, semicolons and
+/// blanks part them. Where semicolons or blanks part them without commas, a comma between digits is a decimal point:
+/// "430;200;8,9"; a number with more than one such sign ("1.234,5") stays a word that is none.
 std::vector<std::string> table_words(const std::string& line);
 
 /// The number that a word is; none where it is no finite one.

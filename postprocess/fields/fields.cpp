@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "common/map/raster.hpp"
+#include "common/table_words.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -125,6 +127,9 @@ std::string file_word(const std::string& name) {
 }
 
 std::string csv_field(std::string text) {
+  constexpr std::string_view begins_a_formula = "=+-@\t\r";
+  const bool formula = !text.empty() && begins_a_formula.find(text.front()) != std::string_view::npos;
+  if (formula && !signed_number(text)) text.insert(text.begin(), '\'');
   for (char& c : text)
     if (c == '\n' || c == '\r') c = ' ';
   if (text.find_first_of(",\"") == std::string::npos) return text;

@@ -34,7 +34,8 @@ std::string file_word(const std::string& name);
 /// Those of several names, in their order: where two would be the same, the later one ends in "-2", "-3", ...
 std::vector<std::string> file_words(const std::vector<std::pair<std::string, std::vector<double>>>& named);
 
-/// A text as a field of comma-separated values: quoted where it holds a separator, its line breaks made spaces.
+/// A text as a field of comma-separated values: quoted where it holds a separator, its line breaks made spaces. One
+/// that a spreadsheet would compute ("=1+1") begins with an apostrophe.
 std::string csv_field(std::string text);
 
 /// Volume under a thickness raster, NaN as nothing [m3]. Summed in extended precision: it is compared to 1e-9.

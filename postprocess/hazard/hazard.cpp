@@ -289,9 +289,7 @@ std::string buildings_table(const std::vector<Building>& buildings) {
       "name,arrival_s,thickness_max_m,thickness_p99_m,speed_max_m_s,speed_p99_m_s,pressure_max_kPa,pressure_p99_kPa,"
       "width_m,force_N,force_from,cells\n";
   for (const Building& b : buildings) {
-    std::string name;
-    for (const char c : b.name) name += c == '"' ? "\"\"" : std::string(1, c);
-    text += fmt::format("\"{}\",{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{}\n", name,
+    text += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{}\n", csv_field(b.name),
                         std::isnan(b.arrival) ? "" : fmt::format("{:.6g}", b.arrival), b.thickness.largest,
                         b.thickness.p99, b.speed.largest, b.speed.p99, b.pressure.largest, b.pressure.p99, b.width,
                         b.force, source_word(b.source), b.cells);

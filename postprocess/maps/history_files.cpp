@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/stage/identity.hpp"
+#include "postprocess/fields/fields.hpp"
 #include "postprocess/maps/nc_file.hpp"
 #include "postprocess/writers/job.hpp"
 
@@ -39,7 +40,7 @@ std::string table_of(const RunHistory& history, const std::string& kind, const s
     text += "," + column->name.substr(places.front().prefix.size());
   for (std::size_t row = 0; row < time.size(); ++row)
     for (const PlaceColumns& place : places) {
-      text += fmt::format("\n{:.9g},{}", time[row], place.name);
+      text += fmt::format("\n{:.9g},{}", time[row], csv_field(place.name));
       for (const HistoryColumn* column : place.columns) text += fmt::format(",{:.9g}", column->values[row]);
     }
   return text + "\n";

@@ -214,17 +214,28 @@ ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights
   Columns columns;
   std::string line;
   bool first = true;
+  std::ptrdiff_t most = 0, usual = 0;  // numbers of a line: no more than the first line names, and as many as before
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
     const auto words = table_words(line);
     if (words.empty()) continue;
     if (std::exchange(first, false)) {
       if (const auto named = columns_of_header(words, heights)) {
         columns = *named;
+        most = std::ssize(words);
         points.are_depths = named->z.depth;
         points.unit = named->z.unit;
         continue;
       }
     }
+    const auto numbers =
+        std::ranges::count_if(words, [](const std::string& word) { return finite_number(word).has_value(); });
+    if (usual == 0) usual = numbers;
+    if (numbers > usual || (most > 0 && numbers > most))
+      throw DataError(
+          {fmt::format("{}: line {}: \"{}\" has {} numbers", file.string(), line_number, line.substr(0, 60), numbers),
+           fmt::format("the first line {} {}", most > 0 && numbers > most ? "names" : "of numbers has",
+                       most > 0 && numbers > most ? most : usual),
+           "Mend the line. Beside decimal commas, part the numbers by semicolons"});
     std::array<double, 3> xyz{};
     for (std::size_t i = 0; i < 3; ++i) {
       const auto value = columns.of[i] < words.size() ? finite_number(words[columns.of[i]]) : std::nullopt;

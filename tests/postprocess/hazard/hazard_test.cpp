@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Classes of intensity, cones of reach and numbers by building, each against what can be said by hand.
 #include "postprocess/hazard/hazard.hpp"
+#include "postprocess/fields/fields.hpp"
 
 #include "postprocess/score/score.hpp"
 #include "tests/postprocess/scene.hpp"
@@ -203,6 +204,14 @@ TEST(Buildings, table_quotes_names_and_leaves_out_what_never_came) {
   Building b;
   b.name = "The \"old\" mill, east";
   EXPECT_TRUE(test::holds(buildings_table({b}), {"\n\"The \"\"old\"\" mill, east\",,0,0,"}));
+  b.name = "=cmd|'/C calc'!A0";
+  EXPECT_TRUE(test::holds(buildings_table({b}), {"\n'=cmd|'/C calc'!A0,"})) << "no formula of a spreadsheet";
+}
+
+TEST(CsvField, holds_no_formula_and_leaves_numbers) {
+  for (const char* formula : {"=1+1", "+A1", "-A1", "@SUM(A1)", "\tx"})
+    EXPECT_EQ(csv_field(formula).front(), '\'') << formula;
+  for (const char* plain : {"-5.5", "+3", "mill", "a=b", ""}) EXPECT_EQ(csv_field(plain), plain);
 }
 
 TEST(ScoreOfHazard, has_a_percentile_beside_every_largest_value) {

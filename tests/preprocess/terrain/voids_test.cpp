@@ -120,6 +120,15 @@ TEST_F(point_table, takes_no_depths_for_elevations_and_names_the_line_that_is_no
             "first line");
 }
 
+TEST_F(point_table, reads_decimal_commas_and_drops_no_rest_of_a_line) {
+  EXPECT_EQ(read_points(scratch.write("p.csv", "x;y;z\n430,5;200;8,9\n")).z, std::vector<double>{8.9});
+  EXPECT_EQ(read_points(scratch.write("q.txt", "430,5\t200\t8,9\n")).x, std::vector<double>{430.5});
+  for (const char* text : {"x,y,z\n430,200,8,9\n", "430 200 8\n430 200 8 9\n"})
+    EXPECT_TRUE(holds(data_fault([&] { read_points(scratch.write("r.csv", text)); }), {"line 2", "has 4 numbers"}));
+  EXPECT_EQ(read_points(scratch.write("s.csv", "1.0,2.0,3.0,by hand\n4,5,6,bored\n")).z, (std::vector<double>{3, 6}));
+  EXPECT_TRUE(holds(data_fault([&] { read_points(scratch.write("t.csv", "1;2;1.234,5\n")); }), {"line 1"}));
+}
+
 using point_file = test::InScratch;
 
 TEST_F(point_file, reads_vector_points_with_elevation_and_refuses_those_in_degrees) {

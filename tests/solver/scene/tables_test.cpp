@@ -121,6 +121,18 @@ TEST(TableWords, are_parted_by_any_separator_and_lose_case_quotes_and_comments) 
   EXPECT_TRUE(table_words("  # nothing").empty());
 }
 
+TEST(TableWords, have_decimal_commas_where_something_else_parts_them) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(table_words("430;200;8,9"), (Words{"430", "200", "8.9"}));
+  EXPECT_EQ(table_words("430,5 200,25\t-8,9e-1"), (Words{"430.5", "200.25", "-8.9e-1"}));
+  EXPECT_EQ(table_words("\xEF\xBB\xBFx;y;depth"), (Words{"x", "y", "depth"}));
+  EXPECT_EQ(table_words("1,2,3"), (Words{"1", "2", "3"}));
+  EXPECT_EQ(table_words("1, 2, 3"), (Words{"1", "2", "3"}));
+  EXPECT_EQ(table_words("1,2,3 4"), (Words{"1", "2", "3", "4"}));
+  EXPECT_EQ(table_words("1.0,2.0,3.0,by hand"), (Words{"1.0", "2.0", "3.0", "by", "hand"}));
+  for (const char* many : {"1;1.234,5", "1;1,234,567"}) EXPECT_FALSE(signed_number(table_words(many).at(1))) << many;
+}
+
 TEST(TableWords, are_numbers_where_they_are_finite_ones) {
   EXPECT_EQ(signed_number("+1.5e3"), 1500);
   EXPECT_EQ(signed_number("-2"), -2);
