@@ -302,7 +302,7 @@ HalvedCells plane_column(Bench& bench, double aspect) {
   HalvedCells column;
   Sand s = column_of(aspect, 16);
   s.per_cell = 2;
-  for (int level = 0; level < HalvedCells::levels; ++level, s.h /= 2) {
+  for (int level = 0; level < HalvedCells::levels; ++level) {
     column.finest = bench.run(fmt::format("a = {:g}, h = {:.2g} mm", aspect, 1000 * s.h), overrides_of(s));
     const Outcome& o = column.finest;
     if (!o.ok()) break;
@@ -311,6 +311,7 @@ HalvedCells plane_column(Bench& bench, double aspect) {
     const Band height = band_of(lube_height(aspect), lajeunesse_height(aspect));
     if (level + 1 == HalvedCells::levels)
       bench.within(o, "height over width", height_of(o, s), height.low, height.high);
+    s.h /= 2;
   }
   column.judge(bench, band_of(lube_run_out(aspect), lajeunesse_run_out(aspect)));
   return column;
@@ -376,7 +377,7 @@ void round_sand_columns(Bench& bench) {
     HalvedCells column;
     Sand s = column_of(aspect, 8 * std::max(1.0, aspect));
     s.per_cell = 2;
-    for (int level = 0; level < HalvedCells::levels; ++level, s.h /= 2) {
+    for (int level = 0; level < HalvedCells::levels; ++level) {
       column.finest =
           bench.run(fmt::format("a = {:g}, h = radius / {}", aspect, std::lround(s.width / s.h)), round_column(s));
       const Outcome& o = column.finest;
@@ -386,6 +387,7 @@ void round_sand_columns(Bench& bench) {
       const Band height = band_of(round_height(aspect), nothing);
       if (level + 1 == HalvedCells::levels && std::isfinite(height.low))
         bench.within(o, "height over radius", height_of(o, s), height.low, height.high);
+      s.h /= 2;
     }
     column.judge(bench, band_of(round_run_out(aspect), nothing));
     pictures.add(aspect, column,
