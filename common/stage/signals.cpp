@@ -46,14 +46,14 @@ void say(std::initializer_list<const char*> parts) {
     if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) return;  // nobody is left to tell
 }
 
-[[noreturn]] void end_at_once() {
+[[noreturn]] void end_at_once(ExitCode code) {
   for (Slot& slot : doomed)
     if (slot.state.load() == Slot::filled) ::unlink(slot.path.data());
-  ::_exit(static_cast<int>(ExitCode::interrupted));
+  ::_exit(static_cast<int>(code));
 }
 
 extern "C" void talus_on_signal(int) {
-  if (signals_seen != 0) end_at_once();
+  if (signals_seen != 0) end_at_once(ExitCode::interrupted);
   signals_seen = 1;
   if (const char* saved = own_end.load(); saved != nullptr)
     say({"\n", program_name.load(), ": interrupted; ", saved, " (a second Ctrl-C ends it at once)\n"});
@@ -65,7 +65,7 @@ extern "C" void talus_on_end_of_grace(int) {
   if (own_end.load() != nullptr) return;
   say({"\n", program_name.load(),
        ": ended in the middle of its work (interrupted). What carries a final name is whole; run the stage again\n"});
-  end_at_once();
+  end_at_once(ExitCode::interrupted);
 }
 
 void handle(int number, void (*handler)(int)) {
@@ -102,7 +102,7 @@ extern "C" void talus_on_crash(int signal) {
   const char number[3]{static_cast<char>('0' + signal / 10), static_cast<char>('0' + signal % 10), '\0'};
   say({crashing_program.data(), ": crashed while reading ", reading->file(), " (signal ",
        signal < 10 ? number + 1 : number, "): the file is damaged. ", reading->remedy(), "\n"});
-  ::_exit(static_cast<int>(ExitCode::data));
+  end_at_once(ExitCode::data);
 }
 
 }  // namespace
