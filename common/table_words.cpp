@@ -46,13 +46,6 @@ bool commas_are_decimal(std::string_view text) {
   return words > 1;
 }
 
-/// The word with a point for its comma, where that is the only sign of the kind in a number.
-std::string with_decimal_point(std::string word) {
-  const std::size_t comma = word.find(',');
-  if (comma != std::string::npos && has_no_other_comma(word)) word[comma] = '.';
-  return word;
-}
-
 }  // namespace
 
 std::vector<std::string> table_words(const std::string& line) {
@@ -63,12 +56,14 @@ std::vector<std::string> table_words(const std::string& line) {
   std::vector<std::string> result;
   std::string word;
   const auto end_word = [&] {
-    if (!word.empty()) result.push_back(decimal_commas ? with_decimal_point(std::move(word)) : std::move(word));
+    if (!word.empty()) result.push_back(std::move(word));
     word.clear();
   };
   for (std::size_t n = 0; n < text.size(); ++n) {
     const char c = text[n];
-    if ((c == ',' && !(decimal_commas && is_within_number(text, n))) || c == ';' || is_blank(c))
+    if (decimal_commas && is_within_number(text, n))
+      word += '.';
+    else if (c == ',' || c == ';' || is_blank(c))
       end_word();
     else if (c != '"')
       word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
