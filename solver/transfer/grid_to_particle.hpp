@@ -173,17 +173,25 @@ struct GridToParticle {
   TALUS_HD void move_with(int p, const Stencil<Real, Shape>& s, const Sums& sums, Real dt) const {
     Vec3<Real> v = sums.velocity;
     const Real kept = changes ? Real(clock->subgrid.kept) : Real(0);
-    if (kept > Real(0)) v = (points.velocity_of(p) + sums.change) * kept + v * (Real(1) - kept);
+    const Real rise = sums.climb - climb_ahead(sums, dt);
+    Real asked = 0;
+    if (kept > Real(0)) {
+      const Vec3<Real> finer = points.velocity_of(p) + sums.change - v;
+      asked = part_up_to(finer.z, asked_by_ground(s, sums, rise));
+      v += finer * kept;
+      v.z += asked * (Real(1) - kept);
+    }
     if constexpr (budget) {
       const Vec3<Real> old = points.velocity_of(p);
       const double mass = static_cast<double>(points.volume[p] * materials.density(points.material, p));
       atomic_add(&clock->budget.transfer_loss,
                  0.5 * mass * (static_cast<double>(dot(old, old)) - static_cast<double>(dot(v, v))));
+      atomic_add(&clock->budget.reaction[2], mass * static_cast<double>(asked * (Real(1) - kept)));
     }
     points.set_velocity(p, v);
     if (affine) points.set_affine(p, s.affine_velocity(sums.moment, sums.gradient));
     const Vec3<Real> move{sums.velocity.x * dt / grid.spacing, sums.velocity.y * dt / grid.spacing,
-                          (sums.climb - climb_ahead(sums, dt)) * dt / grid.layer_height};
+                          rise * dt / grid.layer_height};
     if constexpr (part == Gather::motion) {
       points.move[0][p] = move.x;
       points.move[1][p] = move.y;
@@ -191,6 +199,18 @@ struct GridToParticle {
     } else {
       points.move_by(p, move, grid.walls);
     }
+  }
+
+  /// What the ground asks of a point over its nodes, where they leave it or come down at less than that (T8b) [m/s].
+  TALUS_HD static Real asked_by_ground(const Stencil<Real, Shape>& s, const Sums& sums, Real rise) {
+    const Real asked = s.slope_x * sums.velocity.x + s.slope_y * sums.velocity.y - (sums.velocity.z - sums.climb);
+    return fabs(rise) < fabs(asked) ? asked : Real(0);
+  }
+
+  /// The part of a value that lies between zero and an end.
+  TALUS_HD static Real part_up_to(Real value, Real end) {
+    const Real least = end < Real(0) ? end : Real(0), most = end > Real(0) ? end : Real(0);
+    return value < least ? least : value > most ? most : value;
   }
 
   /// What the ground climbs before the point in half a step over what the slopes under it give (T12d) [m/s].

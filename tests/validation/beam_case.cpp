@@ -162,14 +162,14 @@ void refinement(Bench& bench, const std::vector<double>& cells) {
   Chart chart = log_chart("A2: error of the tip deflection over cell size, k = 3.6, 8 points per cell", "cell size [m]",
                           "error against the beam with shear and stretch");
   int colour = 1;
-  for (const char* shape : {"quadratic", "linear"}) {
+  for (const char* shape : {"quadratic", "gimp", "linear"}) {
     Series error{shape, {}, {}, colour++};
     for (const double size : cells) {
       Beam b;
       b.h = size;
       b.per_cell = 2;
       b.shape = shape;
-      // Tolerance: the error of linear functions in bending, (h / depth)^2 / 2, and as much for the clamp.
+      // Tolerance: the error of hats in bending, (h / depth)^2 / 2, and as much for the clamp.
       const double tolerance = std::max(0.01, size * size);
       const double deflection =
           bend(bench, b, linear_schemes()[size < 0.2 ? 0 : 1], tolerance);  // factors of the finest fill memory
@@ -232,7 +232,7 @@ void cantilever_loads(Bench& bench) {
   Chart curve = deflection_chart();
   int colour = 1;
   for (const double h : {0.2, 0.1}) {
-    for (const char* shape : {"quadratic", "linear"}) {
+    for (const char* shape : {"quadratic", "gimp", "linear"}) {
       Beam b;
       b.shape = shape;
       b.h = h;
