@@ -31,7 +31,7 @@ DAY = "2026-11-26"  # of the rows of speed-against-error.csv, which name their c
 CASES = {
     "A1": ("column under its own weight, implicit", "closed form"),
     "A2": ("cantilever, large deflection, implicit", "elastica"),
-    "A3": ("sand column collapse, run-out and height", "Lube et al. (2005), Lajeunesse et al. (2005)"),
+    "A3": ("sand column collapse, run-out and height", "Lube et al., Lajeunesse et al. (2005)"),
     "A3b": ("sand columns of seven aspect ratios", "the same experiments; the coarsest grid halved"),
     "A3c": ("round sand columns", "Lube et al. (2004)"),
     "A4": ("memory of the implicit scheme", "the reference paper's tables"),
