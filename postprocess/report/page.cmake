@@ -42,6 +42,6 @@ function(talus_page name function folder kind)
     VERBATIM)
 endfunction()
 
-talus_page(page page_template ${_shared} report THREE ${_shared}/report.css)
+talus_page(report_page page_template ${_shared} report THREE ${_shared}/report.css)
 set(_ensemble ${CMAKE_CURRENT_SOURCE_DIR}/ensemble/page)
 talus_page(ensemble_page ensemble_template ${_ensemble} ensemble ${_shared}/report.css ${_ensemble}/ensemble.css)
