@@ -53,7 +53,7 @@ def compare(first, second, threshold_m=1.0):
         footprint_csi=_csi(*volumes["peak_thickness"], threshold_m * area),
         deposit_csi=_csi(left, right, threshold_m * area),
         runout_first_m=runouts[0], runout_second_m=runouts[1], runout_difference_m=runouts[1] - runouts[0],
-        volume_first_m3=float(right.sum()), volume_second_m3=float(left.sum()),
+        volume_first_m3=math.fsum(right.flat), volume_second_m3=math.fsum(left.flat),
         rms_m=float(numpy.sqrt(numpy.mean(((left - right)[either] / area) ** 2))) if either.any() else 0.0,
     )  # fmt: skip
 
