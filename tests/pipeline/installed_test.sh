@@ -146,7 +146,7 @@ test_styles_documents_and_licences_are_installed() {
 
 # Libraries whose scripts the report holds say their names in their own first lines.
 test_report_names_the_licence_of_every_library_in_it() {
-  local page=$TALUS_BUILD/postprocess/report/page.html name found=0
+  local page=$TALUS_BUILD/postprocess/report/report_page.html name found=0
   local licences=$TALUS_SOURCE/postprocess/report/page/licences.txt
   while IFS= read -r name; do
     found=$((found + 1))
