@@ -4,17 +4,19 @@
 """Writes the tables of figures into the pages that show them, from the files that the measuring commands have left.
 
 usage: tools/make-tables.py                        the tables of docs/benchmarks
-       tools/make-tables.py --validation TABLE.md  the tables of the validation too, from what `make validate` writes
+       tools/make-tables.py --validation JSON...   first read the rows of `make validate` from its validation.json
        tools/make-tables.py --scores OUT...        first read the scores of scenes from these folders of results
 
-TABLE.md                               build/validation-table.md of `make validate LONG=1`: all rows of one commit
 docs/benchmarks/speed-against-error.csv, kernels-h200.csv   of `make -C pipelines/benchmarks`
+docs/benchmarks/validation.csv         all rows of `make validate LONG=1`, by --validation; files of different cases
+                                       made at one commit are put together, others are refused
 docs/benchmarks/scores.csv             of the scenes of pipelines/, by --scores
 A page holds "<!-- table: NAME -->" and "<!-- end of table -->"; what stands between them is written here.
 """
 import csv
 import datetime
 import json
+import math
 import pathlib
 import re
 import sys
@@ -25,72 +27,120 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = ["README.md", "docs/explanation/validation.md", "docs/explanation/performance.md"]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end of table -->)", re.S)
 SCORES = ROOT / "docs/benchmarks/scores.csv"
+VALIDATION = ROOT / "docs/benchmarks/validation.csv"
 REAL_EVENTS = ("ryggfonn2021", "cascade2021", "frank-slide")
 DAY = "2026-11-26"  # of the rows of speed-against-error.csv, which name their commit alone
 # What a case is, and what holds it; the cases in full are on the page of the validation.
 CASES = {
-    "A1": ("column under its own weight, implicit", "closed form"),
-    "A2": ("cantilever, large deflection, implicit", "elastica"),
-    "A3": ("sand column collapse, run-out and height", "Lube et al., Lajeunesse et al. (2005)"),
-    "A3b": ("sand columns of seven aspect ratios", "the same experiments; the coarsest grid halved"),
-    "A3c": ("round sand columns", "Lube et al. (2004)"),
-    "A4": ("memory of the implicit scheme", "the reference paper's tables"),
-    "B1": ("block on an incline, any direction", "Newton's law"),
-    "B2": ("block on a bed that weakens with speed", "the integrated law"),
+    "A1": ("column under its own weight", "closed form"),
+    "A1b": ("column compacted to a third", "closed form, order"),
+    "A2": ("cantilever, large deflection", "elastica"),
+    "A2-loads": ("cantilever, growing load", "elastica"),
+    "A3": ("sand column", "laboratories (2005)"),
+    "A3-paper": ("sand column, the paper's scheme", "laboratories (2005)"),
+    "A3b": ("sand columns, low to tall", "the same; cells halved"),
+    "A3c": ("round sand columns", "the same; cells halved"),
+    "B1": ("block on an incline", "Newton's law"),
+    "B2": ("block on a weakening bed", "integrated law"),
     "B3": ("heap on a parabola and a bend", "point with Coulomb friction"),
     "B4": ("granular cap on a plane", "Hutter et al. (1993)"),
-    "B5": ("layer with a step (dam break)", "Mangeney et al. (2000)"),
-    "B6": ("vibration, free fall, patch test", "exact"),
+    "B5": ("dam break on a slope", "Mangeney et al. (2000)"),
+    "B6": ("vibration, fall, patch test", "exact"),
     "B7": ("block on a shaken plane", "Newmark (1965)"),
-    "B8": ("blocks of unknown friction, an ensemble", "the closed form's distribution"),
+    "B8": ("blocks of unknown friction", "distribution in closed form"),
     "C1": ("long implicit steps in a flow", "explicit steps of 0.1 CFL"),
-    "D1": ("factor of safety, homogeneous slope", "Bishop & Morgenstern (1960)"),
-    "D2": ("factor of safety with foundation", "Griffiths & Lane (1999)"),
-    "D3": ("factor of safety, weak seam", "Giam & Donald (1989)"),
+    "D1": ("factor of safety, slope", "Bishop & Morgenstern (1960)"),
+    "D2": ("the same with foundation", "Griffiths & Lane (1999)"),
+    "D3": ("the same with weak seam", "Giam & Donald (1989)"),
     "D4": ("factor of safety, wedge", "Hoek & Bray (1981)"),
-    "D5": ("factor of safety, undrained vertical cut", "Martin (2011)"),
+    "D5": ("factor of safety, vertical cut", "Martin (2011)"),
 }
 
 
-def rows_of_validation(table):
-    """(case, quantity, error, tolerance, met) of every judged row that is no cost; and (commit, day, place)."""
-    text, rows, case = table.read_text(encoding="utf-8"), [], ""
-    heading = re.search(r"^Commit (\w+), ([\d-]+), .*? on (.*)\.$", text, re.M)
-    for line in text.splitlines():
-        name = re.match(r"\*\*([A-D]\d[a-z]?(?:-\w+)?) ?.*\*\*$", line)
-        cells = [cell.strip() for cell in line.strip("|").split("|")]
-        if name:
-            case = name.group(1)
-        elif len(cells) == 7 and cells[5].strip("*") in ("met", "missed", "failed") and not cells[0].startswith("cost"):
-            error = None if cells[3] == "-" else float(cells[3])  # none: the run failed
-            rows.append((case, cells[0], error, float(cells[4]), cells[5] == "met"))
-    if not rows or not heading:
-        sys.exit(f"tools/make-tables.py: {table} holds no judged rows. Write it: make validate LONG=1")
-    return rows, heading.groups()
+def take_validation(files):
+    """validation.csv from the files of `make validate`: of one commit, and every case once."""
+    sittings = [json.loads(pathlib.Path(file).read_text(encoding="utf-8")) for file in files]
+    commits = sorted({sitting["commit"] for sitting in sittings})
+    if len(commits) != 1:
+        sys.exit(f"tools/make-tables.py: the files are of different commits ({', '.join(commits)}): one table shows "
+                 "one state. Run `make validate` again for the cases of the older one")
+    cases = [case for sitting in sittings for case in sitting["cases"]]
+    if twice := sorted({case for case in cases if cases.count(case) > 1}):
+        sys.exit(f"tools/make-tables.py: {', '.join(twice)} in more than one file. Leave one of them out")
+    keys = ("case quantity judged computed lowest highest error tolerance pass steps place").split()
+    with VALIDATION.open("w", encoding="utf-8", newline="") as table:
+        writer = csv.DictWriter(table, [*keys, "commit", "date"], lineterminator="\n", extrasaction="ignore")
+        writer.writeheader()
+        for sitting in sittings:
+            writer.writerows(row | {"commit": commits[0], "date": sitting["date"]} for row in sitting["rows"])
+
+
+def rows_of_validation():
+    """The judged rows that are no cost, by case."""
+    with VALIDATION.open(encoding="utf-8") as table:
+        rows = [row for row in csv.DictReader(table)
+                if row["judged"] == "True" and not row["quantity"].startswith("cost")]
+    cases = {}
+    for row in rows:
+        case = re.match(r"[A-Z]\d[a-z]?(?:-\w+)?", row["case"]).group()
+        if case not in CASES:
+            sys.exit(f"tools/make-tables.py: {VALIDATION.name} has rows of {case}, which CASES does not describe")
+        cases.setdefault(case, []).append(row)
+    return cases
+
+
+def value(text):
+    return float(text) if text else math.nan
+
+
+def used(row):
+    """Which part of what it may err a number has used up: 1 at the tolerance or at the end of a band."""
+    computed, low, high, tolerance = (value(row[key]) for key in ("computed", "lowest", "highest", "tolerance"))
+    if math.isnan(computed):
+        return math.inf  # the run failed
+    if low == high:
+        return value(row["error"]) / tolerance if tolerance else 0 if row["pass"] == "True" else math.inf
+    if math.isnan(low) or math.isnan(high):
+        return computed / high if math.isnan(low) else low / computed if computed else math.inf
+    low, high = low - tolerance * abs(low), high + tolerance * abs(high)
+    return abs(computed - (low + high) / 2) / ((high - low) / 2)
 
 
 def percent(part):
-    return "0" if part == 0 else f"{100 * part:.2g} %" if part >= 1e-4 else f"{part:.0e}"
+    return f"{100 * part:.2g} %"
 
 
-def missed_first(cases, rows):
-    missed = {row[0] for row in rows if not row[4]}
-    return sorted(cases, key=lambda case: case not in missed)
+def beside(row):
+    """"7.5 (5.0 to 7.1)": a number with what is wanted of it."""
+    computed, low, high, tolerance = (value(row[key]) for key in ("computed", "lowest", "highest", "tolerance"))
+    if math.isnan(computed):
+        return "no result"
+    if low == high == 0:
+        return f"{computed:.2g} (at most {tolerance:.2g})"
+    if math.isnan(low) or math.isnan(high):
+        return f"{computed:.4g} ({f'at most {high:.4g}' if math.isnan(low) else f'at least {low:.4g}'})"
+    wanted = f"{low:.4g}" if low == high else f"{low:.3g} to {high:.3g}"
+    return f"{computed:.4g} ({wanted}{f', {percent(tolerance)}' if tolerance else ''})"
 
 
-def validated(table, cases, order=lambda cases, _: cases):
-    rows, (commit, day, place) = rows_of_validation(table)
-    lines = ["| case | against | met | median error | largest |", "| --- | --- | --- | --- | --- |"]
-    for case in order(cases, rows):
-        mine = [row for row in rows if row[0] == case]
-        if not mine:
-            continue
-        errors = sorted(row[2] for row in mine if row[2] is not None)
-        met = sum(row[4] for row in mine)
-        middle, most = (percent(errors[len(errors) // 2]), percent(errors[-1])) if errors else ("-", "-")
-        lines.append(f"| {case}: {CASES[case][0]} | {CASES[case][1]} | {met} of {len(mine)} | {middle} | {most} |")
-    return [*lines, "", f"Commit {commit[:7]}, {day}, on {' and '.join(place.split('; '))}, by",
-            "`make validate LONG=1`. The error of a quantity that must lie in a band is its distance from the band."]
+def validation():
+    """Cases with missed rows first, and of each the row that is furthest beyond or nearest to what it may be."""
+    cases = rows_of_validation()
+    lines = ["| case | against | missed | close | worst row: computed (wanted, tolerance) |", "|" + " --- |" * 5]
+    for case, rows in sorted(cases.items(), key=lambda item: -max(map(used, item[1]))):
+        missed, worst = sum(row["pass"] == "False" for row in rows), max(rows, key=used)
+        name = textwrap.shorten(worst["quantity"].partition(",")[0], 22, placeholder=" ...")
+        close = sum(row["pass"] == "True" and used(row) <= 0.1 for row in rows)
+        lines.append(f"| {case}: {CASES[case][0]} | {CASES[case][1]} | {f'**{missed}**' if missed else 0} of "
+                     f"{len(rows)} | {close} | {name} {beside(worst)} |")
+    rows = [row for mine in cases.values() for row in mine]
+    places = sorted({re.sub(r", \d+ threads?$", "", row["place"]) for row in rows if row["place"]})
+    days = sorted({row["date"] for row in rows})
+    text = (f"Commit {rows[0]['commit'][:7]}, {' and '.join(days)}, on {' and '.join(places)}, by `make validate "
+            "LONG=1`. "
+            "Close: met with at most a tenth of the tolerance, or of the way from the middle of a band to its end. "
+            "Laboratories: Lube et al. (2004, 2005) and Lajeunesse et al. (2005), of both what lies within a tenth.")
+    return [*lines, "", *textwrap.wrap(text, 120, break_on_hyphens=False)]
 
 
 def speed():
@@ -205,12 +255,8 @@ def day_of(folder):
     return datetime.date.fromtimestamp((folder / "score.json").stat().st_mtime).isoformat()
 
 
-OF_VALIDATION = {
-    "validated": lambda table: validated(table, ["A3", "A3b", "A3c", "B1", "B2", "B3", "B4", "B5", "B7", "C1", "D1",
-                                                 "D4"]),
-    "validation-cases": lambda table: validated(table, list(CASES), missed_first),
-}
 TABLES = {
+    "validation": validation,
     "speed": speed,
     "kernels": kernels,
     "events": events,
@@ -218,30 +264,26 @@ TABLES = {
 }
 
 
-def filled(path, validation):
-    """The page's text with every table as the files have it now; those of the validation only where its rows are."""
+def filled(path):
+    """The page's text with every table as the files have it now."""
     root = "../" * (len(path.relative_to(ROOT).parts) - 1)
-
-    def block(match):
-        name = match.group(2)
-        if name in OF_VALIDATION and not validation:
-            return match.group(0)
-        lines = OF_VALIDATION[name](validation) if name in OF_VALIDATION else TABLES[name]()
-        return match.group(1) + "\n".join(lines).replace("ROOT", root) + "\n" + match.group(3)
-    return BLOCK.sub(block, path.read_text(encoding="utf-8"))
+    return BLOCK.sub(lambda match: match.group(1) + "\n".join(TABLES[match.group(2)]()).replace("ROOT", root) + "\n" +
+                     match.group(3), path.read_text(encoding="utf-8"))
 
 
 def main():
-    kind, *rest = sys.argv[1:] or [""]
-    if kind == "--scores":
-        take_scores(rest)
-    elif kind and (kind != "--validation" or len(rest) != 1):
+    kind, *files = sys.argv[1:] or [""]
+    take = {"": None, "--scores": take_scores, "--validation": take_validation}
+    if kind not in take or bool(kind) != bool(files):
         sys.exit(__doc__)
-    validation = pathlib.Path(rest[0]) if kind == "--validation" else None
-    if validation and not validation.is_file():
-        sys.exit(f"tools/make-tables.py: {validation} was not found. Write it: make validate LONG=1")
+    for file in files:
+        if not pathlib.Path(file).exists():
+            sys.exit(f"tools/make-tables.py: {file} was not found. It is written by make "
+                     f"{'scores' if kind == '--scores' else 'validate LONG=1'}")
+    if kind:
+        take[kind](files)
     for name in PAGES:
-        text = filled(ROOT / name, validation)
+        text = filled(ROOT / name)
         if text != (ROOT / name).read_text(encoding="utf-8"):
             (ROOT / name).write_text(text, encoding="utf-8")
             print(ROOT / name)

@@ -24,4 +24,5 @@ sed -i -E "s/^(project\(talus VERSION )[0-9.]+/\1$version/" CMakeLists.txt
 sed -i -E "/^date-released: /d; s/^version: .*/version: $version\ndate-released: $date/" CITATION.cff
 sed -i "s/^## \[Unreleased\]$/&\n\n## [$version] - $date/" CHANGELOG.md
 echo "$present -> $version, $date. Look at the change, then: git commit -am 'Version $version' &&" \
-  "git tag -a v$version -m 'Talus $version'. Publish build/validation-table.md with it ('make validate LONG=1 ON=gpu')."
+  "git tag -a v$version -m 'Talus $version'. docs/benchmarks/validation.csv is of commit" \
+  "$(sed -n '2s/.*,\([0-9a-f]*\),[0-9-]*$/\1/p' docs/benchmarks/validation.csv)."

@@ -29,9 +29,11 @@ test_version_is_written_once() {
 
 test_release_sets_version_date_and_heading() {
   cp "$TALUS_SOURCE"/{CMakeLists.txt,CITATION.cff,CHANGELOG.md} .
+  mkdir -p docs/benchmarks
+  printf 'case,commit,date\nA1,1a2b3c4d5,2096-01-02\n' >docs/benchmarks/validation.csv
   export TALUS_RELEASE_OF=$TALUS_SCRATCH
   expect_exit 0 "$TALUS_SOURCE/tools/release.sh" 97.1.2 2097-05-04
-  grep -q 'build/validation-table.md' stdout || fail "it names no table of the validation: $(<stdout)"
+  grep -q 'validation.csv is of commit 1a2b3c4d5\.' stdout || fail "it names no state of the validation: $(<stdout)"
   [[ $(version_of .) == 97.1.2 ]] || fail "CMakeLists.txt has $(version_of .)"
   grep -qx 'version: 97.1.2' CITATION.cff && grep -qx 'date-released: 2097-05-04' CITATION.cff ||
     fail "$(<CITATION.cff)"

@@ -1,10 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Tables and pictures of figures: each shows one commit, and noted rows claim nothing.
+# Tables and pictures of figures: each shows one commit, and misses stand first.
 source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-tabulate() { /usr/bin/python3 "$TALUS_SOURCE/tools/tabulate-validation.py" "$@"; }
+# A tree of the pages and the files that their tables are made of.
+tree() {
+  mkdir -p tree/docs/explanation tree/tools
+  cp "$TALUS_SOURCE/README.md" tree
+  cp "$TALUS_SOURCE"/docs/explanation/{validation,performance}.md tree/docs/explanation
+  cp -r "$TALUS_SOURCE/docs/benchmarks" tree/docs
+  cp "$TALUS_SOURCE/tools/make-tables.py" tree/tools
+}
+make_tables() { /usr/bin/python3 tree/tools/make-tables.py "$@"; }
 
 # sitting COMMIT CASE ROW...: a validation.json.
 sitting() {
@@ -15,58 +23,49 @@ sitting() {
     \"cases\": [\"$name\"], \"rows\": [$rows]}"
 }
 
-common='"case": "X1", "computed": 1.02, "steps": 20, "place": "a processor"'
-met="{$common, \"quantity\": \"way\", \"judged\": true, \"reference\": 1, \"error\": 0.02, \"tolerance\": 0.05,
-  \"pass\": true}"
-missed="{$common, \"quantity\": \"height\", \"judged\": true, \"reference\": 1, \"error\": 0.02, \"tolerance\": 0.01,
-  \"pass\": false}"
-noted="{$common, \"quantity\": \"speed\", \"judged\": false}"
-
-test_noted_rows_claim_nothing() {
-  sitting 1a2b3c4d5 X1 "$met" "$missed" "$noted" >one.json
-  expect_exit 0 tabulate one.json table.md
-  grep -qF '| way | 1.02 | 1 | 0.02 | 0.05 | met | 20 |' table.md || fail "no row that is met: $(<table.md)"
-  grep -qF '| height | 1.02 | 1 | 0.02 | 0.01 | **missed** | 20 |' table.md || fail "no row that misses: $(<table.md)"
-  grep -qF '| speed | 1.02 | - | - | noted | | 20 |' table.md || fail "no row that is noted: $(<table.md)"
-  grep -qF '3 rows: 2 are judged, 1 of these miss their tolerance; 1 are noted' table.md || fail "counts: $(<table.md)"
+# row CASE QUANTITY COMPUTED LOWEST HIGHEST ERROR TOLERANCE PASS: a judged row.
+row() {
+  echo "{\"case\": \"$1 some grid\", \"quantity\": \"$2\", \"judged\": true, \"computed\": $3, \"lowest\": $4,
+    \"highest\": $5, \"error\": $6, \"tolerance\": $7, \"pass\": $8, \"steps\": 20, \"place\": \"a processor\"}"
 }
 
-test_commit_and_date_stand_in_it() {
-  sitting 1a2b3c4d5 X1 "$met" >one.json
-  expect_exit 0 tabulate one.json table.md
-  grep -qF 'Commit 1a2b3c4d5, 2026-11-22, the quick runs, on a processor.' table.md || fail "heading: $(<table.md)"
+test_pages_show_what_the_files_hold() {
+  tree
+  expect_exit 0 make_tables
+  for page in README.md docs/explanation/validation.md docs/explanation/performance.md; do
+    cmp "tree/$page" "$TALUS_SOURCE/$page" || fail "the tables of $page are not of the files: make tables"
+  done
 }
 
-test_rows_of_two_commits_are_refused() {
-  sitting 1a2b3c4d5 X1 "$met" >one.json
-  sitting 9f8e7d6c5 X2 "$met" >two.json
-  expect_exit 1 tabulate one.json two.json table.md
-  expect_words 'different commits (1a2b3c4d5, 9f8e7d6c5)'
-  [[ ! -e table.md ]] || fail "it wrote a table of two states"
-}
-
-test_a_case_stands_in_it_once() {
-  sitting 1a2b3c4d5 X1 "$met" >one.json
-  expect_exit 1 tabulate one.json one.json table.md
-  expect_words 'X1 in more than one file'
-}
-
-test_pages_show_the_rows_that_are_given() {
-  mkdir -p tree/docs/explanation tree/tools
-  cp "$TALUS_SOURCE/README.md" tree
-  cp "$TALUS_SOURCE"/docs/explanation/{validation,performance}.md tree/docs/explanation
-  cp -r "$TALUS_SOURCE/docs/benchmarks" tree/docs
-  cp "$TALUS_SOURCE/tools/make-tables.py" tree/tools
-  expect_exit 0 /usr/bin/python3 tree/tools/make-tables.py
-  cmp tree/README.md "$TALUS_SOURCE/README.md" || fail "tables of the validation changed without its rows"
-  sitting 1a2b3c4d5 B1 "${met//X1/B1}" "${missed//X1/B1}" >one.json
-  expect_exit 0 tabulate one.json
-  expect_exit 0 /usr/bin/python3 tree/tools/make-tables.py --validation validation-table.md
-  grep -qF "| B1: block on an incline, any direction | Newton's law | 1 of 2 | 2 % | 2 % |" tree/README.md ||
-    fail "README has no such row"
+test_misses_stand_first_with_the_number_beside_what_is_wanted() {
+  tree
+  sitting 1a2b3c4d5 B1 "$(row B1 way 1.0005 1 1 0.0005 0.01 true)" "$(row B1 height 1.005 1 1 0.005 0.01 true)" \
+    "$(row B1 'cost: steps' 500 null 48 9 0 false)" '{"case": "B1", "quantity": "speed", "judged": false}' >one.json
+  sitting 1a2b3c4d5 A3 "$(row A3 run-out 7.5 5 7.08 0.06 0 false)" "$(row A3 height 1.7 1.5 2 0 0 true)" >two.json
+  sitting 1a2b3c4d5 B8 "$(row B8 members 500 500 null 0 0 true)" \
+    "$(row B8 distance null 1 1 null 0.01 false)" >three.json
+  expect_exit 0 make_tables --validation one.json two.json three.json
+  grep -A4 '^| case | against | missed' tree/README.md | sed 1,2d >rows
+  sed -n 1p rows | grep -qF "| **1** of 2 | 0 | distance no result |" || fail "no result: $(<rows)"
+  sed -n 2p rows | grep -qF "| **1** of 2 | 0 | run-out 7.5 (5 to 7.08) |" || fail "band: $(<rows)"
+  sed -n 3p rows | grep -qF "| 0 of 2 | 1 | height 1.005 (1, 1 %) |" || fail "no miss: $(<rows)"
   grep -qF 'Commit 1a2b3c4, 2026-11-22, on a processor' tree/README.md || fail "README names no commit"
-  expect_exit 1 /usr/bin/python3 tree/tools/make-tables.py --validation nowhere.md
-  expect_words 'nowhere.md was not found' 'make validate'
+}
+
+test_rows_of_two_commits_or_of_one_case_twice_are_refused() {
+  tree
+  sitting 1a2b3c4d5 B1 "$(row B1 way 1 1 1 0 0.01 true)" >one.json
+  sitting 9f8e7d6c5 B2 "$(row B2 way 1 1 1 0 0.01 true)" >two.json
+  sitting 1a2b3c4d5 X9 "$(row X9 way 1 1 1 0 0.01 true)" >three.json
+  expect_exit 1 make_tables --validation one.json two.json
+  expect_words 'different commits (1a2b3c4d5, 9f8e7d6c5)'
+  expect_exit 1 make_tables --validation one.json one.json
+  expect_words 'B1 in more than one file'
+  expect_exit 1 make_tables --validation nowhere.json
+  expect_words 'nowhere.json was not found' 'make validate'
+  cmp tree/docs/benchmarks/validation.csv "$TALUS_SOURCE/docs/benchmarks/validation.csv" || fail "it wrote two states"
+  expect_exit 1 make_tables --validation three.json
+  expect_words 'rows of X9'
 }
 
 test_rows_of_two_commits_are_not_drawn() {

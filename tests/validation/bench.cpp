@@ -174,7 +174,7 @@ std::string as_toml(const CostBook& book) {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
 
 /// Runs a program with its stderr in `log`; returns its exit code.
 int call(const std::vector<std::string>& words, const fs::path& log) {
@@ -300,42 +300,45 @@ Row Bench::row_of(const Outcome& outcome, const std::string& quantity) const {
   return row;
 }
 
-void Bench::judge(const Outcome& outcome, const std::string& quantity, double computed, double reference, double error,
-                  double tolerance) {
+void Bench::judge(const Outcome& outcome, const std::string& quantity, double computed, const Claim& claim) {
   Row row = row_of(outcome, quantity);
   row.computed = outcome.ok() ? computed : unknown;
-  row.reference = reference;
-  row.error = outcome.ok() ? error : unknown;
-  row.tolerance = tolerance;
+  row.reference = claim.reference;
+  row.error = outcome.ok() ? claim.error : unknown;
+  row.tolerance = claim.tolerance;
+  row.lowest = claim.lowest;
+  row.highest = claim.highest;
   row.judged = true;
-  row.pass = outcome.ok() && std::isfinite(error) && error <= tolerance;
+  row.pass = outcome.ok() && std::isfinite(claim.error) && claim.error <= claim.tolerance;
   keep_(row);
 }
 
 void Bench::compare(const Outcome& outcome, const std::string& quantity, double computed, double reference,
                     double tolerance) {
-  judge(outcome, quantity, computed, reference,
-        reference == 0 ? std::abs(computed) : std::abs(computed / reference - 1), tolerance);
+  const double error = reference == 0 ? std::abs(computed) : std::abs(computed / reference - 1);
+  judge(outcome, quantity, computed, {reference, error, tolerance, reference, reference});
 }
 
 void Bench::at_least(const Outcome& outcome, const std::string& quantity, double computed, double reference) {
-  judge(outcome, quantity, computed, reference,
-        std::isfinite(computed) ? std::max(0.0, reference - computed) : unknown);
+  const double error = std::isfinite(computed) ? std::max(0.0, reference - computed) : unknown;
+  judge(outcome, quantity, computed, {reference, error, 0, reference, endless});
 }
 
 void Bench::at_most(const Outcome& outcome, const std::string& quantity, double computed, double reference) {
-  judge(outcome, quantity, computed, reference, std::max(0.0, computed / reference - 1));
+  judge(outcome, quantity, computed, {reference, std::max(0.0, computed / reference - 1), 0, -endless, reference});
 }
 
-void Bench::within(const Outcome& outcome, const std::string& quantity, double computed, double low, double high) {
-  const double nearer = std::abs(computed - low) < std::abs(computed - high) ? low : high;
-  judge(outcome, quantity, computed, nearer, computed >= low && computed <= high ? 0 : std::abs(computed / nearer - 1));
+void Bench::within(const Outcome& outcome, const std::string& quantity, double computed, const Band& band,
+                   double tolerance) {
+  const double nearer = std::abs(computed - band.low) < std::abs(computed - band.high) ? band.low : band.high;
+  const double error = computed >= band.low && computed <= band.high ? 0 : std::abs(computed / nearer - 1);
+  judge(outcome, quantity, computed, {nearer, error, tolerance, band.low, band.high});
 }
 
 void Bench::note(const Outcome& outcome, const std::string& quantity, double computed) {
   Row row = row_of(outcome, quantity);
   row.computed = outcome.ok() ? computed : unknown;
-  row.reference = row.tolerance = row.error = unknown;
+  row.reference = row.tolerance = row.error = row.lowest = row.highest = unknown;
   keep_(row);
 }
 

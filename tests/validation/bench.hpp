@@ -13,6 +13,7 @@
 #include "common/ensemble/counts.hpp"
 #include "common/ensemble/member_table.hpp"
 #include "common/run/run_file.hpp"
+#include "tests/validation/closed_forms.hpp"
 #include "tests/validation/recipe_text.hpp"
 
 namespace talus::validation {
@@ -98,8 +99,9 @@ struct MembersOutcome {
 struct Row {
   std::string name, quantity;  // "A1 quasi-static, pcg", "top displacement"
   double computed, reference, error, tolerance;
-  bool judged = false;  // against a tolerance, a band or a bound; else the number is noted and claims nothing
-  bool pass = false;    // where it is judged
+  double lowest, highest;  // ends of the band, or the reference twice; infinite: no bound on that side
+  bool judged = false;     // against a tolerance, a band or a bound; else the number is noted and claims nothing
+  bool pass = false;       // where it is judged
   double wall_time = 0, particles = 0, steps = 0, newton = 0, cg = 0, over_cfl = 0;  // NaN: the run does not say
   std::string place, fault;
 
@@ -138,8 +140,9 @@ class Bench {
 
   /// A row that `computed` passes up to `reference`; its error is what is too much.
   void at_most(const Outcome& outcome, const std::string& quantity, double computed, double reference);
-  /// A row that `computed` passes from `low` to `high`; its error is how far beyond the nearer end it lies, over that.
-  void within(const Outcome& outcome, const std::string& quantity, double computed, double low, double high);
+  /// A row that `computed` passes within a band; its error is how far beyond the nearer end it lies, over that.
+  void within(const Outcome& outcome, const std::string& quantity, double computed, const Band& band,
+              double tolerance = 0);
   /// A row that says what was measured and claims nothing.
   void note(const Outcome& outcome, const std::string& quantity, double computed);
 
@@ -154,8 +157,11 @@ class Bench {
   /// Runs the stages, and returns what went wrong.
   std::string run_stages(const std::string& variant, const Overrides& overrides, bool profile) const;
   Row row_of(const Outcome& outcome, const std::string& quantity) const;
-  void judge(const Outcome& outcome, const std::string& quantity, double computed, double reference, double error,
-             double tolerance = 0);
+  /// What a number has to be, as in a row.
+  struct Claim {
+    double reference, error, tolerance, lowest, highest;
+  };
+  void judge(const Outcome& outcome, const std::string& quantity, double computed, const Claim& claim);
   void judge_cost(const Outcome& outcome);
 
   std::string name_;

@@ -228,7 +228,7 @@ TEST(Report, tells_noted_rows_from_judged_ones) {
   EXPECT_EQ(rows[1].at("pass"), false);
   EXPECT_EQ(rows[2].at("judged"), false);
   EXPECT_EQ(rows[2].at("computed"), 3);
-  for (const char* claim : {"pass", "error", "tolerance", "reference"})
+  for (const char* claim : {"pass", "error", "tolerance", "reference", "lowest", "highest"})
     EXPECT_FALSE(rows[2].contains(claim)) << "a noted row claims " << claim;
 }
 
@@ -250,6 +250,29 @@ TEST(Report, counts_noted_rows_apart) {
   EXPECT_NE(table.find("3 rows: 2 judged, of which 1 failed; 1 noted, of which 0 without a result"), std::string::npos)
       << table;
   EXPECT_NE(table.find(" noted "), std::string::npos) << table;
+}
+
+TEST(Report, shows_a_band_as_a_band_beside_the_number) {
+  const auto rows = rows_of("", [](Bench& bench, const Outcome& o) {
+    bench.within(o, "run-out", 7.5, {5, 7.08});
+    bench.within(o, "factor", 1.2915, {1.24, 1.27}, 0.02);
+    bench.at_least(o, "order", 1.5, 1);
+    bench.at_most(o, "steps", 40, 48);
+    bench.compare(o, "way", 1.005, 1, 0.01);
+    bench.measure(o, "distance", 0.03, 0.04);
+  });
+  const std::string table = as_table(rows);
+  for (const char* claim : {" 5 to 7.08 ", " 1.24 to 1.27 +- 2 % ", " >= 1 ", " <= 48 ", " 1 +- 1 % ", " <= 0.04 "})
+    EXPECT_NE(table.find(claim), std::string::npos) << claim << "\n" << table;
+  const auto json = json_of(rows).at("rows");
+  EXPECT_EQ(json[0].at("pass"), false);
+  EXPECT_EQ(json[1].at("pass"), true);
+  EXPECT_NEAR(json[1].at("error").get<double>(), 0.0169, 1e-4);
+  EXPECT_EQ(json[0].at("lowest"), 5);
+  EXPECT_EQ(json[0].at("highest"), 7.08);
+  EXPECT_TRUE(json[2].at("highest").is_null());
+  EXPECT_TRUE(json[3].at("lowest").is_null());
+  EXPECT_EQ(json[4].at("lowest"), json[4].at("highest"));
 }
 
 TEST(Report, of_a_run_without_a_result_passes_nothing) {

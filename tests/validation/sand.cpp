@@ -101,8 +101,8 @@ Collapse collapse(Bench& bench, const std::string& name, const Sand& s, const Ov
   const double aspect = s.height / s.width;
   const Band run_out = band_of(lube_run_out(aspect), lajeunesse_run_out(aspect)),
              height = band_of(lube_height(aspect), lajeunesse_height(aspect));
-  bench.within(c.outcome, "run-out over width", c.front / s.width - 1, run_out.low, run_out.high);
-  bench.within(c.outcome, "height over width", c.top / s.width, height.low, height.high);
+  bench.within(c.outcome, "run-out over width", c.front / s.width - 1, run_out);
+  bench.within(c.outcome, "height over width", c.top / s.width, height);
   return c;
 }
 

@@ -254,8 +254,8 @@ struct HalvedCells {
   void judge(Bench& bench, const Band& band) const {
     for (std::size_t n = 0; n < run_outs.size(); ++n)
       bench.note(finest, fmt::format("run-out over width, cells halved {} times", n), run_outs[n]);
-    bench.within(finest, "run-out over width, extrapolated", limit(), band.low, band.high);
-    bench.measure(finest, "run-out that halving the coarsest cells moves",
+    bench.within(finest, "run-out over width, extrapolated", limit(), band);
+    bench.measure(finest, "run-out moved by halving the coarsest cells",
                   run_outs.size() < 2 ? nothing : (1 + run_outs[1]) / (1 + run_outs[0]) - 1, 0.04);
     if (profiles.size() == levels)
       bench.note(finest, "profile that the last halving moves, over height",
@@ -309,8 +309,7 @@ HalvedCells plane_column(Bench& bench, double aspect) {
     column.run_outs.push_back(run_out_of(o, s));
     column.profiles.push_back(outline_of(o, o.frames.size() - 1, s, profile_colours[level]));
     const Band height = band_of(lube_height(aspect), lajeunesse_height(aspect));
-    if (level + 1 == HalvedCells::levels)
-      bench.within(o, "height over width", height_of(o, s), height.low, height.high);
+    if (level + 1 == HalvedCells::levels) bench.within(o, "height over width", height_of(o, s), height);
     s.h /= 2;
   }
   column.judge(bench, band_of(lube_run_out(aspect), lajeunesse_run_out(aspect)));
@@ -386,7 +385,7 @@ void round_sand_columns(Bench& bench) {
       column.profiles.push_back(outline_of_quarter(o.last(), s, profile_colours[level]));
       const Band height = band_of(round_height(aspect), nothing);
       if (level + 1 == HalvedCells::levels && std::isfinite(height.low))
-        bench.within(o, "height over radius", height_of(o, s), height.low, height.high);
+        bench.within(o, "height over radius", height_of(o, s), height);
       s.h /= 2;
     }
     column.judge(bench, band_of(round_run_out(aspect), nothing));
