@@ -6,7 +6,7 @@
 usage: xinmo_variants.py prepare|run|table|all OUT [--bin DIR] [--on gpu] [--only TEXT]
 
 All four have the rock's own modulus, velocity weakening, and area B. The first 5 s of the reference paper's scheme are
-also solved in the paper's own steps of 1e-4 s, and their cost carried on to the end. prepare writes domain and recipes
+also solved in steps of 1e-4 s, and their cost carried on to the end. prepare writes domain and recipes
 (talus-preprocess; Debian: python3-tomli-w), run solves (talus-solve), table maps the deposits (talus-postprocess) and
 writes OUT/xinmo-variants.csv (Debian: python3-h5py). The three may be done on different machines.
 """
@@ -38,7 +38,7 @@ def newton(steps, tolerance):
 VARIANTS = {
     "reference-preset": runs.Method("the paper's scheme, as we read it", "0.01 s", preset(0.01)),
     "reference-preset-papers-steps": runs.Method(
-        "the same in the paper's steps, first 5 s", "1e-4 s",
+        "the same in steps of 1e-4 s, first 5 s", "1e-4 s",
         preset(PAPERS_STEP, end_time_s=FIRST_SECONDS, stop_kinetic_fraction=0.0)),
     "newton": newton(10, 1e-3),
     "newton-loose": newton(5, 1e-2),

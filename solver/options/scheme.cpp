@@ -22,7 +22,7 @@ StepAbilities abilities_of(Integrator integrator) {
 
 void TimeOptions::describe(recipe::Visitor& v) {
   recipe::choice(v, "preset", preset, {{"none", Preset::none}, {"reference", Preset::reference}},
-                 "reference: the implicit scheme of the reference paper as it stands (docs/explanation/theory.md)");
+                 "reference: the implicit scheme of the reference paper as read here (docs/explanation/theory.md)");
   recipe::choice(
       v, "integrator", integrator,
       {{"explicit", Integrator::explicit_},
