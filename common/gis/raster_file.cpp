@@ -141,8 +141,6 @@ RasterFile::~RasterFile() = default;
 
 const fs::path& RasterFile::file() const { return parts_->source.file(); }
 const MapGrid& RasterFile::grid() const { return parts_->grid; }
-double RasterFile::step() const { return parts_->source.step(); }
-
 Raster RasterFile::read(const CellWindow& w) const {
   const MapGrid& whole = parts_->grid;
   refuse_outside(whole, w);

@@ -37,9 +37,6 @@ class RasterFile {
   const std::filesystem::path& file() const;  ///< the file as it was named
   const MapGrid& grid() const;                ///< the grid of its cells, after a reprojection if there is one
 
-  /// Between one value that the file can hold and the next, where it holds integers [m]; 0 for real numbers.
-  double step() const;
-
   /// The cells of a window, which must lie inside the grid (std::out_of_range). All may be NaN. Throws DataError when
   /// they cannot be read (file cut short) and where one is infinite, naming its place.
   Raster read(const CellWindow& window) const;

@@ -258,10 +258,6 @@ bool RasterSource::in_metres() const {
   return own == nullptr || (!own->IsGeographic() && std::abs(own->GetLinearUnits() - 1) <= 1e-9);
 }
 
-double RasterSource::step() const {
-  return GDALDataTypeIsInteger(band_->GetRasterDataType()) != 0 ? std::abs(scale_) : 0.0;
-}
-
 std::array<double, 2> RasterSource::centre() const {
   const double column = 0.5 * columns(), line = 0.5 * lines();
   const auto& g = transform_;

@@ -40,8 +40,6 @@ class RasterSource {
   std::array<double, 2> centre() const;    ///< in the file's CRS
   std::array<int, 2> block() const;        ///< columns and lines that are stored together
 
-  double step() const;  ///< between neighbouring values of a file of integers [m]; 0 for real numbers
-
   /// Cells in the order of the file, first line first. Throws DataError: unreadable, infinite.
   std::vector<double> read(int column, int line, int columns, int lines);
 

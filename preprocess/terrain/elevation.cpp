@@ -12,6 +12,7 @@
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/terrain/height_statistics.hpp"
 #include "preprocess/terrain/plausible_ground.hpp"
 #include "preprocess/terrain/triangulation.hpp"
 
@@ -78,30 +79,6 @@ Raster middle_of(const RasterFile& file) {
   return file.read({(file.grid().columns - columns) / 2, (file.grid().rows - rows) / 2, columns, rows});
 }
 
-/// True when all heights are whole metres, and not all the same.
-bool whole_metres(const Raster& raster) {
-  double low = INFINITY, high = -INFINITY;
-  for (const double z : raster.values) {
-    if (std::isnan(z)) continue;
-    if (z != std::round(z)) return false;
-    low = std::min(low, z);
-    high = std::max(high, z);
-  }
-  return high > low;
-}
-
-/// Heights in steps: each carries the error of its rounding, and gentle slopes turn into stairs.
-void warn_of_steps(const std::filesystem::path& file, double step, double cell) {
-  constexpr double hardly_matters = 0.1;  // [m] below what surveys tell apart
-  if (step < hardly_matters) return;
-  warn("stepped-heights",
-       fmt::format(
-           "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
-           "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
-           file.string(), step, step / std::sqrt(12.0), std::atan(step / cell) * 180 / M_PI),
-       {{"step", step, "m"}});
-}
-
 /// As it was read, not placed.
 Raster read_off(const Elevation& elevation, const MapGrid& grid) {
   const bool one_crs = same_crs(elevation.crs_wkt(), grid.crs_wkt);
@@ -158,8 +135,7 @@ Elevation read_elevation(const std::string& key, const std::filesystem::path& fi
     elevation.raster.grid = elevation.on_disk->grid();
     if (key.starts_with("bed.")) return elevation;
     elevation.has_fill = std::make_shared<bool>(false);
-    warn_of_steps(file, std::max(elevation.on_disk->step(), whole_metres(middle_of(*elevation.on_disk)) ? 1.0 : 0.0),
-                  elevation.cell());
+    warn_of_statistics(middle_of(*elevation.on_disk), file);
   }
   return elevation;
 }
