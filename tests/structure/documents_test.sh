@@ -68,11 +68,15 @@ test_relative_links_lead_somewhere() {
     found=$((found + 1))
     [[ -e ./${document%"${document##*/}"}${link%%#*} ]] || fail "$document links to $link, which does not exist"
   done < <(documents | xargs -d '\n' awk 'FNR == 1 { block = 0 } /^ *```/ { block = !block } !block {
-    while (match($0, /\]\([^) ]+/)) {
+    while (match($0, /^\[[^\]]+\]: [^ ]+|\]\([^) ]+/)) {
+      if (substr($0, RSTART, 1) == "[") sub(/\]: /, "](")   # a definition of a reference
+      match($0, /\]\([^) ]+/)
       print FILENAME, substr($0, RSTART + 2, RLENGTH - 2)
       $0 = substr($0, RSTART + RLENGTH)
     } }')
   [[ $found -ge 5 ]] || fail "only $found links were found in the documents: this test looks at nothing"
+  found=$(documents | xargs -d '\n' grep -nE '^\[[^]]+\]: [^ ]+ +[^"]' || true)
+  [[ -z $found ]] || fail "a definition of a link is none unless it stands alone on its line:"$'\n'"$found"
 }
 
 test_install_script_holds_every_package_named_in_cmake() {
