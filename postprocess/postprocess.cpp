@@ -133,7 +133,8 @@ void run_single(StageContext& context, const Options& options) {
     if (job.options.survey.from_preprocess) judge_survey(context, found, job);
     warn_of_other_title(context, job.run.summary);
     check_volume(job.file, job.run);
-    job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold);
+    job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold,
+                             heights_in(job.run.summary.provenance, "the surface that the run began with"));
     if (job.survey && !is_accepted(job.run.summary.findings, "swapped-surveys")) judge_order(*job.survey, job.run.maps);
   });
   if (!found.error_known)

@@ -141,9 +141,14 @@ void transform_places(const std::string& from_wkt, const std::string& to_wkt, st
                      "Check their coordinates, or reproject them beforehand: ogr2ogr -t_srs"});
 }
 
+bool is_no_length(const std::string& unit) {
+  const std::string text = plain(unit);
+  return text.empty() || of_another_quantity(text);
+}
+
 std::optional<double> metres_in(const std::string& unit) {
   const std::string text = plain(unit);
-  if (text.empty() || of_another_quantity(text)) return 1.0;
+  if (is_no_length(unit)) return 1.0;
   if (has(text, "foot") || has(text, "feet") || is_one_of(text, {"ft", "ft us", "us ft", "sft", "ftus", "usft"}))
     return has(text, "us") || has(text, "u s") || has(text, "survey") || text == "sft" ? us_survey_foot : foot;
   if (text == "cm" || has(text, "centimet")) return 0.01;

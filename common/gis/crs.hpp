@@ -47,6 +47,9 @@ void transform_places(const std::string& from_wkt, const std::string& to_wkt, st
 /// be a length but is not known ("fathom").
 std::optional<double> metres_in(const std::string& unit);
 
+/// True for no unit, and for those of other quantities.
+bool is_no_length(const std::string& unit);
+
 /// Metres on the map over metres on the ground (on the ellipsoid), at one place.
 struct GroundScale {
   double x = 1, y = 1;  ///< along the axes of the map

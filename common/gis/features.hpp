@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/gis/declared_heights.hpp"
 #include "common/map/polygon.hpp"
 #include "common/recipe/paths.hpp"
 
@@ -128,9 +129,10 @@ namespace talus {
 
 /// Points with a height each, as a vector file gives them.
 struct PointLayer {
-  std::vector<double> x, y, z;  // in the units of their CRS; z as given
-  std::string crs_wkt;          // empty = none named
-  std::string z_name = {};      // of the attribute that z is; empty = the geometry's
+  std::vector<double> x, y, z;   // in the units of their CRS; z as given
+  std::string crs_wkt;           // empty = none named
+  std::string z_name = {};       // of the attribute that z is; empty = the geometry's
+  DeclaredHeights heights = {};  // what the CRS says of them
 };
 
 /// What GDAL takes a file for when it is asked for a raster: its driver and count of cells; nullopt when it is none.

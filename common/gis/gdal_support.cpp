@@ -100,14 +100,19 @@ OGRSpatialReference spatial_reference(const std::string& wkt) {
   return srs;
 }
 
+OGRSpatialReference horizontal(const OGRSpatialReference& srs) {
+  OGRSpatialReference result(srs);
+  result.StripVertical();
+  if (result.GetAxesCount() > 2) result.DemoteTo2D(nullptr);
+  return result;
+}
+
 std::string horizontal_wkt(const OGRSpatialReference* srs) {
-  if (srs == nullptr || srs->IsEmpty()) return "";
-  OGRSpatialReference horizontal(*srs);
-  horizontal.StripVertical();
-  if (horizontal.GetAxesCount() > 2) horizontal.DemoteTo2D(nullptr);
+  if (srs == nullptr || srs->IsEmpty() || (srs->IsVertical() != 0 && srs->IsCompound() == 0)) return "";
+  const OGRSpatialReference flat = horizontal(*srs);
   const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* wkt = nullptr;
-  const bool exported = horizontal.exportToWkt(&wkt, options.data()) == OGRERR_NONE;
+  const bool exported = flat.exportToWkt(&wkt, options.data()) == OGRERR_NONE;
   std::string text = exported && wkt != nullptr ? wkt : "";
   CPLFree(wkt);
   return text;

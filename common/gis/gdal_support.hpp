@@ -60,6 +60,9 @@ using Transformation = std::unique_ptr<OGRCoordinateTransformation, DestroyTrans
 /// A CRS from WKT, x before y. Throws DataError when PROJ does not understand it.
 OGRSpatialReference spatial_reference(const std::string& wkt);
 
+/// A CRS without its vertical axis.
+OGRSpatialReference horizontal(const OGRSpatialReference& srs);
+
 /// WKT2 of the horizontal part of a CRS (heights are metres in all of this project); "" for none.
 std::string horizontal_wkt(const OGRSpatialReference* srs);
 

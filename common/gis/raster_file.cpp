@@ -99,7 +99,7 @@ struct RasterFile::Parts {
   bool north_first = true;
   mutable bool warned = false;
 
-  Parts(const fs::path& file, const ReadOptions& options) : source(file, options.vertical_unit) {
+  Parts(const fs::path& file, const ReadOptions& options) : source(file, options) {
     if (to_be_reprojected(source, options.to_crs)) {
       warped.emplace(source, gdal::spatial_reference(options.to_crs));
       grid = warped->grid();
@@ -141,6 +141,8 @@ RasterFile::~RasterFile() = default;
 
 const fs::path& RasterFile::file() const { return parts_->source.file(); }
 const MapGrid& RasterFile::grid() const { return parts_->grid; }
+const DeclaredHeights& RasterFile::heights() const { return parts_->source.heights(); }
+
 Raster RasterFile::read(const CellWindow& w) const {
   const MapGrid& whole = parts_->grid;
   refuse_outside(whole, w);
@@ -180,14 +182,18 @@ Raster RasterFile::read() const {
 
 Raster read_raster(const fs::path& file) { return RasterFile(file).read(); }
 
-Raster read_raster_in_metres(const fs::path& file, const std::string& crs_wkt) {
-  return RasterFile(file, {in_metres(file) ? "" : crs_wkt, "", ""}).read();
+RasterFile raster_in_metres(const fs::path& file, const std::string& crs_wkt) {
+  return RasterFile(file, {.to_crs = in_metres(file) ? "" : crs_wkt, .vertical_unit = {}, .or_else = {}});
 }
 
-bool in_metres(const fs::path& file) { return RasterSource(file, "metre").in_metres(); }
+namespace {
+const ReadOptions no_lengths{.to_crs = {}, .vertical_unit = {}, .or_else = {}, .are_lengths = false};
+}
+
+bool in_metres(const fs::path& file) { return RasterSource(file, no_lengths).in_metres(); }
 
 std::string utm_crs_of(const fs::path& file) {
-  const RasterSource source(file, "metre");
+  const RasterSource source(file, no_lengths);
   if (source.srs() == nullptr || !source.placed())
     throw DataError(
         {file.string() + ": has no CRS", "so its UTM zone cannot be told",

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "common/gis/declared_heights.hpp"
 #include "common/map/raster.hpp"
 
 namespace talus {
@@ -17,16 +18,20 @@ struct ReadOptions {
   /// (bilinear; square cells about as large as the file's, on whole multiples of their size). Empty: as the file is,
   /// and degrees and feet are refused. A raster without CRS is never reprojected.
   std::string to_crs;
-  /// What the values are in: "metre", "foot" or "us-survey-foot"; "" = what the file says, else metres.
+  /// What the values are in: "metre", "foot" or "us-survey-foot"; "" = what the file says (its band, else the vertical
+  /// axis of its CRS), else metres. Where these differ a warning names both.
   std::string vertical_unit;
   /// Another way out, for the end of a refusal of degrees and feet: "or set working_crs = "utm" in the recipe".
   std::string or_else;
+  /// False: values are no lengths, and stay as they are.
+  bool are_lengths = true;
 };
 
 /// Band 1 of any GDAL raster. Scale and offset are applied; nodata (declared, masked, NaN, or the customary -9999 and
 /// the like where none is declared) becomes NaN; declared feet and other lengths become metres. Reads the header only.
 /// Refused with the command that mends it (DataError): missing or unreadable file, degrees or feet (see ReadOptions), a
-/// unit of length that is not known, rotated or non-square cells. Not for use by two threads at once.
+/// unit of length that is not known, a vertical axis that counts downwards, rotated or non-square cells. Not for use by
+/// two threads at once.
 class RasterFile {
  public:
   explicit RasterFile(const std::filesystem::path& file, const ReadOptions& options = {});
@@ -36,6 +41,7 @@ class RasterFile {
 
   const std::filesystem::path& file() const;  ///< the file as it was named
   const MapGrid& grid() const;                ///< the grid of its cells, after a reprojection if there is one
+  const DeclaredHeights& heights() const;     ///< what its CRS says of heights
 
   /// The cells of a window, which must lie inside the grid (std::out_of_range). All may be NaN. Throws DataError when
   /// they cannot be read (file cut short) and where one is infinite, naming its place.
@@ -53,8 +59,8 @@ class RasterFile {
 /// degrees, feet in the map's plane, and rasters without any value are refused. Throws DataError.
 Raster read_raster(const std::filesystem::path& file);
 
-/// A raster whole: as it is where it is in metres, else reprojected to `crs_wkt`. Throws as read_raster() does.
-Raster read_raster_in_metres(const std::filesystem::path& file, const std::string& crs_wkt);
+/// A raster as it is where it is in metres, else reprojected to `crs_wkt`. Throws as RasterFile does.
+RasterFile raster_in_metres(const std::filesystem::path& file, const std::string& crs_wkt);
 
 /// True when a raster's CRS is projected and in metres, or when it names none. Throws DataError as RasterFile does.
 bool in_metres(const std::filesystem::path& file);

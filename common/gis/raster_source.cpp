@@ -13,9 +13,11 @@
 #include <gdal_utils.h>
 
 #include "common/gis/crs.hpp"
+#include "common/gis/declared_heights.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
 #include "common/gis/resampling.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
 
@@ -64,13 +66,32 @@ std::unique_ptr<AsciiGrid> ascii_grid(const fs::path& file) {
   return std::make_unique<AsciiGrid>(file);
 }
 
-/// The unit that a band names, else that of the vertical part of its CRS.
-std::string declared_unit(GDALRasterBand& band, const OGRSpatialReference* srs) {
-  std::string unit = band.GetUnitType();
-  if (!unit.empty() || srs == nullptr || !srs->IsCompound()) return unit;
-  const char* name = nullptr;
-  srs->GetTargetLinearUnits("VERT_CS", &name);
-  return name == nullptr ? "" : name;
+/// A unit of lengths, and what says so.
+struct LengthUnit {
+  double metres;
+  std::string name, by;
+};
+
+bool differ(const LengthUnit& a, const LengthUnit& b) {
+  constexpr double between_feet = 1e-5;  // the two feet differ by 2e-6, and "ft" does not say which of them is meant
+  return std::abs(a.metres / b.metres - 1) > between_feet;
+}
+
+/// Whether a unit is a length, or a word that may be one.
+bool may_be_length(const std::string& unit) { return !unit.empty() && !is_no_length(unit); }
+
+/// What a file declares, the band before the vertical axis of the CRS. Where the band says feet and the axis says
+/// which, the axis alone.
+std::vector<LengthUnit> declared_units(GDALRasterBand& band, const DeclaredHeights& heights) {
+  std::vector<LengthUnit> units;
+  const std::string unit = band.GetUnitType();
+  if (const auto metres = metres_in(unit); may_be_length(unit) && metres)
+    units.push_back({*metres, unit, "the unit of its band"});
+  if (heights.metres == 0) return units;
+  const LengthUnit axis{heights.metres, heights.unit, "the vertical axis of its CRS"};
+  if (!units.empty() && !differ(units.front(), axis)) units.clear();
+  units.push_back(axis);
+  return units;
 }
 
 /// No height, and no other quantity of a slide, is as large; grids use such values for nodata without always saying so.
@@ -134,7 +155,7 @@ class PlainBand final : public GDALRasterBand {
 PlainCells::PlainCells(RasterSource& source) : source_(source), srs_(*source.srs()), transform_(source.transform()) {
   nRasterXSize = source.columns();
   nRasterYSize = source.lines();
-  srs_.StripVertical();  // or GDAL would convert heights on its own
+  srs_ = horizontal(srs_);  // or GDAL would convert heights on its own
   srs_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   if (srs_.IsGeographic() && transform_[0] >= 180) transform_[0] -= 360;  // 0..360 degrees
   SetBand(1, new PlainBand(this, source.block()));
@@ -214,7 +235,7 @@ Dataset warp(const RasterSource& source, GDALDataset& cells, const MapGrid& grid
 
 std::string mended(const fs::path& file, const char* suffix) { return file.stem().string() + suffix + ".tif"; }
 
-RasterSource::RasterSource(fs::path file, const std::string& vertical_unit)
+RasterSource::RasterSource(fs::path file, const ReadOptions& how)
     : file_(std::move(file)),
       ascii_(ascii_grid(file_)),
       dataset_(open(file_, *ascii_)),
@@ -226,22 +247,36 @@ RasterSource::RasterSource(fs::path file, const std::string& vertical_unit)
   placed_ = dataset_->GetGeoTransform(transform_.data()) == CE_None;
   scale_ = band_->GetScale();
   offset_ = band_->GetOffset();
-  take_unit(vertical_unit);
+  heights_ = declared_heights(dataset_->GetSpatialRef(), file_);
+  if (how.are_lengths) take_unit(how.vertical_unit);
 }
 
+/// The unit of the recipe goes before that of the band, and this before that of the CRS's vertical axis.
 void RasterSource::take_unit(const std::string& vertical_unit) {
+  const std::string file = file_.string(), of_band = band_->GetUnitType();
+  if (heights_.downwards)
+    throw DataError({file + ": the vertical axis of its CRS counts downwards", "this stage needs heights",
+                     fmt::format("Turn the values (gdal_calc.py -A {} --calc=\"-1.0*A\" --outfile=out.tif), and give "
+                                 "out.tif a CRS of heights (gdal_edit.py -a_srs)",
+                                 file)});
   const bool given = !vertical_unit.empty();
-  const std::string unit = given ? vertical_unit : declared_unit(*band_, srs());
-  const auto metres = metres_in(unit);
-  if (!metres)
-    throw DataError({fmt::format("{}: its values are in \"{}\"", file_.string(), unit),
+  if (!given && may_be_length(of_band) && !metres_in(of_band))
+    throw DataError({fmt::format("{}: its values are in \"{}\"", file, of_band),
                      "this unit of length is not known, and this stage needs metres",
-                     fmt::format("If they are metres, say so: gdal_edit.py -units m {}", file_.string())});
-  if (*metres == 1.0) return;
-  scale_ *= *metres;
-  offset_ *= *metres;
-  log_info(fmt::format("{}: heights {} {}, converted to metres (x {:.10g})", file_.string(),
-                       given ? "taken as" : "are in", unit, *metres));
+                     fmt::format("If they are metres, say so: gdal_edit.py -units m {}", file)});
+  std::vector<LengthUnit> units = declared_units(*band_, heights_);
+  if (given) units.insert(units.begin(), {metres_in(vertical_unit).value_or(1.0), vertical_unit, "vertical_unit"});
+  if (units.empty()) return;
+  const LengthUnit& taken = units.front();
+  for (const LengthUnit& other : units)
+    if (differ(taken, other))
+      warn("vertical-unit", fmt::format("{}: heights are taken to be in {} ({}), though {} says {}", file, taken.name,
+                                        taken.by, other.by, other.name));
+  if (taken.metres == 1.0) return;
+  scale_ *= taken.metres;
+  offset_ *= taken.metres;
+  log_info(fmt::format("{}: heights {} {}, converted to metres (x {:.10g})", file, given ? "taken as" : "are in",
+                       taken.name, taken.metres));
 }
 
 int RasterSource::columns() const { return dataset_->GetRasterXSize(); }
@@ -249,7 +284,8 @@ int RasterSource::lines() const { return dataset_->GetRasterYSize(); }
 
 const OGRSpatialReference* RasterSource::srs() const {
   const OGRSpatialReference* srs = dataset_->GetSpatialRef();
-  return srs == nullptr || srs->IsEmpty() ? nullptr : srs;
+  const bool places_nothing = srs == nullptr || srs->IsEmpty() || (srs->IsVertical() != 0 && srs->IsCompound() == 0);
+  return places_nothing ? nullptr : srs;
 }
 
 bool RasterSource::in_metres() const {

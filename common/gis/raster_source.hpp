@@ -26,8 +26,8 @@ std::string mended(const std::filesystem::path& file, const char* suffix);
 /// An open raster file, its cells in the order of the file.
 class RasterSource {
  public:
-  /// Opens the file and reads its header. `vertical_unit` as in ReadOptions.
-  RasterSource(std::filesystem::path file, const std::string& vertical_unit);
+  /// Opens the file and reads its header. Of `how` the unit and kind of the values count.
+  RasterSource(std::filesystem::path file, const ReadOptions& how);
 
   const std::filesystem::path& file() const { return file_; }  ///< the file as it was named
   int columns() const;                                         ///< number of columns
@@ -35,10 +35,12 @@ class RasterSource {
   bool placed() const { return placed_; }                      ///< has a georeference
   /// Coordinates in the CRS of the file by column and line.
   const GeoTransform& transform() const { return transform_; }
-  const OGRSpatialReference* srs() const;  ///< null when the file names none
-  bool in_metres() const;                  ///< the CRS is projected and in metres, or there is none
-  std::array<double, 2> centre() const;    ///< in the file's CRS
-  std::array<int, 2> block() const;        ///< columns and lines that are stored together
+  /// The file's CRS; null where it names none, or a vertical one alone.
+  const OGRSpatialReference* srs() const;
+  const DeclaredHeights& heights() const { return heights_; }  ///< the vertical axis of the file's CRS
+  bool in_metres() const;                                      ///< the CRS is projected and in metres, or there is none
+  std::array<double, 2> centre() const;                        ///< in the file's CRS
+  std::array<int, 2> block() const;                            ///< columns and lines that are stored together
 
   /// Cells in the order of the file, first line first. Throws DataError: unreadable, infinite.
   std::vector<double> read(int column, int line, int columns, int lines);
@@ -56,6 +58,7 @@ class RasterSource {
   std::shared_ptr<GDALDataset> dataset_;
   GDALRasterBand* band_ = nullptr;
   bool placed_ = false;
+  DeclaredHeights heights_;
   GeoTransform transform_{};
   double scale_ = 1, offset_ = 0;  // what is stored, to metres
   std::size_t undeclared_ = 0;

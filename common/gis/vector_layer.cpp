@@ -205,6 +205,7 @@ PointLayer read_point_layer(const fs::path& file, const ZAttributes& attributes)
   OGRLayer& layer = *dataset->GetLayer(0);
   PointLayer points;
   points.crs_wkt = gdal::horizontal_wkt(layer.GetSpatialRef());
+  points.heights = gdal::declared_heights(layer.GetSpatialRef(), file);
   const OGRFeatureDefn& fields = *layer.GetLayerDefn();
   const int first = field_of(fields, attributes.first), known = field_of(fields, attributes.known);
   for (const auto& feature : layer) {

@@ -159,7 +159,9 @@ std::optional<Survey> survey_of(const StageContext& context, Options options, En
   options.survey.find_in(context.out, found.error_known);
   if (alone) judge_outside(found, context.out);
   const RunMaps maps = base_maps(ensemble.counts.scene);
-  std::optional<Survey> survey = read_survey(options.survey, maps, options.footprint_threshold);
+  std::optional<Survey> survey =
+      read_survey(options.survey, maps, options.footprint_threshold,
+                  heights_in(ensemble.counts.provenance, "the surface that the members began with"));
   if (alone && survey && !is_accepted(ensemble.counts.findings, "swapped-surveys")) judge_order(*survey, maps);
   return survey;
 }

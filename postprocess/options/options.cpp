@@ -33,7 +33,7 @@ void Options::describe(recipe::Visitor& v) {
             "500 that "
             "fit the thickest, and finer ones below them where it is thin");
   need_classes(v, "[postprocess] classes_m", classes);
-  v.names("accept", accept, {"change-outside-slide", "swapped-surveys"},
+  v.names("accept", accept, {"change-outside-slide", "swapped-surveys", "different-vertical-datums"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.text("institution", institution, "who made this, for the NetCDF file");
   v.text("start_time", start_time,

@@ -96,16 +96,22 @@ Raster read_thickness(const fs::path& file, const SurveyOptions& options, const 
   return raster;
 }
 
-/// after - before on the grid of the after DEM, or on the run's where that DEM has another CRS.
-void read_surfaces(const SurveyOptions& options, const RunMaps& maps, Survey& survey) {
-  auto after = read_raster_in_metres(options.after_dem, maps.grid.crs_wkt);
+/// after - before on the grid of the after DEM, or on the run's where that DEM has another CRS. `ground`: heights of
+/// the run's surface.
+void read_surfaces(const SurveyOptions& options, const RunMaps& maps, const DeclaredHeights& ground, Survey& survey) {
+  const RasterFile file = raster_in_metres(options.after_dem, maps.grid.crs_wkt);
+  Raster after = file.read();
   survey.inputs.push_back(options.after_dem);
   if (after.grid.crs_wkt.empty() != maps.grid.crs_wkt.empty()) check_crs(options.after_dem, after.grid, maps.grid);
   if (!same_crs(after.grid.crs_wkt, maps.grid.crs_wkt)) after = resample_elevation(after, maps.grid);
   Raster before{maps.grid, maps.before};
   if (!options.before_dem.empty()) {
-    before = read_raster_in_metres(options.before_dem, maps.grid.crs_wkt);
+    const RasterFile earlier = raster_in_metres(options.before_dem, maps.grid.crs_wkt);
+    before = earlier.read();
+    judge_vertical_datums(earlier.heights(), file.heights());
     survey.inputs.push_back(options.before_dem);
+  } else {
+    judge_vertical_datums(ground, file.heights());
   }
   if (!same_grid(before.grid, after.grid) || !same_crs(before.grid.crs_wkt, after.grid.crs_wkt))
     before = resample_elevation(before, after.grid);
@@ -250,13 +256,14 @@ void judge_order(const Survey& survey, const RunMaps& maps) {
       {{"rise", rise * area, "m3"}, {"fall", fall * area, "m3"}, {"higher", higher, "m"}});
 }
 
-std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold) {
+std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold,
+                                  const DeclaredHeights& ground) {
   if (!options.given()) return std::nullopt;
   Survey survey;
   survey.name = options.name;
   survey.kind = options.kind;
   if (!options.after_dem.empty()) {
-    read_surfaces(options, maps, survey);
+    read_surfaces(options, maps, ground, survey);
   } else if (options.measures()) {
     const auto& file = options.thickness.empty() ? options.difference : options.thickness;
     auto raster = options.thickness.empty() ? read_values(file, maps) : read_thickness(file, options, maps);

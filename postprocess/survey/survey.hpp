@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/gis/declared_heights.hpp"
 #include "common/map/polygon.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/options/options.hpp"
@@ -84,7 +85,9 @@ struct OnSurveyGrid {
 };
 
 /// What the options name; empty if that is nothing. Throws DataError: unreadable, other CRS, no overlap with the run.
-std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold);
+/// Judges the vertical datums of two surfaces, of which `ground` is the run's.
+std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold,
+                                  const DeclaredHeights& ground);
 
 /// Area-weighted, so that volume is kept; where the run's map ends but the survey goes on, nothing arrived: 0.
 OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey);

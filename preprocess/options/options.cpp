@@ -61,7 +61,8 @@ void ElevationOptions::describe(recipe::Visitor& v, const Options& all) {
 
 void Options::describe(recipe::Visitor& v) {
   ElevationOptions::describe(v, *this);
-  v.names("accept", accept, {"swapped-surveys", "false-lengths", "steep-ground", "fill-value"},
+  v.names("accept", accept,
+          {"swapped-surveys", "false-lengths", "steep-ground", "fill-value", "different-vertical-datums"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.flag("no_release", no_release,
          "base_dem or a laboratory without releases: all that moves enters by [[solve.inflow]]");

@@ -185,9 +185,10 @@ bool is_inside(const Outline& outline, double x, double y) {
 }
 
 /// All faults at once: points outside the outline, and points that are not below the ground.
-std::vector<DepthPoint> depth_points(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o,
-                                     const ReadOptions& how) {
+std::vector<DepthPoint> depth_points(const Raster& before, const DeclaredHeights& heights, const Outline& outline,
+                                     const SlidingSurfaceOptions& o, const ReadOptions& how) {
   const ScatteredPoints read = read_on_grid(o.depth_points, before.grid, how);
+  if (!read.are_depths) judge_vertical_datums(heights, read.heights);
   std::vector<DepthPoint> points;
   std::vector<Fault> faults;
   for (std::size_t i = 0; i < read.x.size(); ++i) {
@@ -234,9 +235,9 @@ void report(const SlidingSurface& s, const Outline& outline) {
     log_info(fmt::format("sliding surface: {} depth points, met to {:.3g} m", s.misfit.size(), worst));
 }
 
-SlidingSurface compute(const Raster& before, const Outline& outline, const SlidingSurfaceOptions& o,
-                       const ReadOptions& how) {
-  if (!o.depth_points.empty()) return surface_through(before, outline, depth_points(before, outline, o, how));
+SlidingSurface compute(const Raster& before, const DeclaredHeights& heights, const Outline& outline,
+                       const SlidingSurfaceOptions& o, const ReadOptions& how) {
+  if (!o.depth_points.empty()) return surface_through(before, outline, depth_points(before, heights, outline, o, how));
   if (o.depth > 0) return surface_of_depth(before, outline, o.depth);
   if (o.volume > 0) return surface_of_volume(before, outline, o.volume);
   const double volume = volume_by_area(outline.area);
@@ -274,9 +275,10 @@ Source find_source(const SurfacePair& s, const SourceOptions& options) {
 
 double volume_by_area(double area) { return 0.074 * std::pow(area, 1.450); }
 
-ComputedSource source_by_outline(const Raster& before, const SourceOptions& options, const ReadOptions& points) {
+ComputedSource source_by_outline(const Raster& before, const DeclaredHeights& heights, const SourceOptions& options,
+                                 const ReadOptions& points) {
   const Outline outline = read_outline(before, options);
-  ComputedSource result{{}, compute(before, outline, options.sliding_surface, points)};
+  ComputedSource result{{}, compute(before, heights, outline, options.sliding_surface, points)};
   report(result.computed, outline);
   result.source = {thickness_above(result.computed.surface, before, outline), before};
   Source& source = result.source;

@@ -52,7 +52,9 @@ double volume_by_area(double area);
 /// and the source above it. Cells on the outline count by their covered part. Throws DataError: polygons that are not
 /// valid or lie outside, ground without elevation within, depth points outside or above the ground. `points` says in
 /// what unit depth points are (as vertical_unit of elevation models); those in degrees are brought to the CRS of
-/// `before`, and a column named depth holds depths.
-ComputedSource source_by_outline(const Raster& before, const SourceOptions& options, const ReadOptions& points);
+/// `before`, a column named depth holds depths, and elevations must have the vertical datum of `heights`, which is that
+/// of `before`.
+ComputedSource source_by_outline(const Raster& before, const DeclaredHeights& heights, const SourceOptions& options,
+                                 const ReadOptions& points);
 
 }  // namespace talus::preprocess

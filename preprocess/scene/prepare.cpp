@@ -82,8 +82,11 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
   for (const BedRaster& one : options.bed.rasters) {
     const auto& file = one.file;
     const std::string name(one.name());
-    const Elevation values = read_elevation(
-        "bed." + name, file, {reproject ? grid.crs_wkt : "", "", dem_reading("", VerticalUnit::declared).or_else});
+    const Elevation values = read_elevation("bed." + name, file,
+                                            {.to_crs = reproject ? grid.crs_wkt : "",
+                                             .vertical_unit = {},
+                                             .or_else = dem_reading("", VerticalUnit::declared).or_else,
+                                             .are_lengths = false});
     require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
     log_resampling(values, grid);
     Raster raster = onto_grid(values, grid);
@@ -226,6 +229,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   prepared.sliding_surface = std::move(scene.sliding_surface);
   prepared.survey = std::move(scene.survey);
   prepared.slide = std::move(scene.slide);
+  prepared.heights = std::move(scene.heights);
   domain.findings = std::move(scene.findings);
   domain.findings.insert(domain.findings.end(), found.list().begin(), found.list().end());
   return prepared;

@@ -32,6 +32,7 @@ struct Prepared {
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
   std::optional<Survey> survey = {};                   // where before and after are given
   std::optional<SurveyedSlide> slide = {};
+  DeclaredHeights heights = {};  // of the surface before
 };
 
 /// Adds the file of `source`, which often holds several layers, once; empty: none.

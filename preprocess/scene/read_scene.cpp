@@ -66,6 +66,7 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
     lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
   SceneRasters scene = from_source(std::move(surfaces[0]), std::move(source));
   scene.lowering = std::move(lowering);
+  scene.heights = survey.before.heights();
   scene.survey = std::move(survey);
   scene.slide = std::move(slide);
   return scene;
@@ -76,6 +77,7 @@ SceneRasters from_sliding_surface(const Options& options) {
   Elevation sliding = read_elevation("sliding_surface", options.sliding_surface, reading(options));
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
+  judge_vertical_datums(before.heights(), sliding.heights());
   std::vector<Raster> surfaces = align({&before}, options);
   log_resampling(sliding, surfaces[0].grid);
   const Raster under = onto_grid(sliding, surfaces[0].grid);
@@ -84,16 +86,19 @@ SceneRasters from_sliding_surface(const Options& options) {
   if (!options.source.polygon.empty())
     pair.outline = read_grown_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, "source");
   Source source = find_source(pair, options.source);
-  return from_source(std::move(surfaces[0]), std::move(source));
+  SceneRasters scene = from_source(std::move(surfaces[0]), std::move(source));
+  scene.heights = before.heights();
+  return scene;
 }
 
 SceneRasters from_outline(const Options& options) {
   Elevation before = read_elevation("before_dem", options.before_dem, reading(options));
   share_crs({&before}, options.working_crs);
   Raster ground = align({&before}, options).front();
-  ComputedSource computed = source_by_outline(ground, options.source, reading(options));
+  ComputedSource computed = source_by_outline(ground, before.heights(), options.source, reading(options));
   SceneRasters scene = from_source(std::move(ground), std::move(computed.source));
   scene.sliding_surface = std::move(computed.computed);
+  scene.heights = before.heights();
   return scene;
 }
 
@@ -117,6 +122,7 @@ SceneRasters from_releases(const Options& options) {
   share_crs({&base}, options.working_crs);
   Raster bed = align({&base}, options).front();
   SceneRasters scene{bed, std::move(bed), {}};
+  scene.heights = base.heights();
   for (std::size_t i = 0; i < options.release.size(); ++i) {
     Release release = read_release(options.release[i], i, scene.bed);
     for (std::size_t c = 0; c < scene.before.values.size(); ++c) scene.before.values[c] += release.thickness.values[c];
@@ -210,6 +216,7 @@ Survey survey_of(const Options& given) {
   Elevation before = read_elevation("before_dem", options.before_dem, reading(options));
   Elevation after = read_elevation("after_dem", options.after_dem, reading(options));
   share_crs({&before, &after}, options.working_crs);
+  judge_vertical_datums(before.heights(), after.heights());
   Survey survey = compare_surveys(std::move(before), std::move(after), options);
   judge_lengths(survey.grid, given.working_crs);
   const MapGrid& grid = survey.grid;

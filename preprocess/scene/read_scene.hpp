@@ -27,6 +27,7 @@ struct SceneRasters {
   std::optional<Survey> survey = {};
   std::optional<SurveyedSlide> slide = {};
   std::vector<Finding> findings = {};
+  DeclaredHeights heights = {};  // of `before`
 };
 
 /// The options with working_crs = "utm" replaced by the zone of the centre of the first DEM. Throws RecipeError.

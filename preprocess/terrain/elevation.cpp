@@ -101,7 +101,7 @@ Extent Elevation::extent() const {
 
 ReadOptions dem_reading(const std::string& working_crs, VerticalUnit unit) {
   const std::string crs = working_crs.empty() ? "" : metric_crs(working_crs);
-  return {crs, name_of(unit), "or set working_crs = \"utm\" in [preprocess]"};
+  return {.to_crs = crs, .vertical_unit = name_of(unit), .or_else = "or set working_crs = \"utm\" in [preprocess]"};
 }
 
 std::string utm_zone_for(const std::filesystem::path& dem) {

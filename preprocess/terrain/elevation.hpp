@@ -42,6 +42,8 @@ struct Elevation {
 
   /// WKT2 of the CRS of its cells or points; "" = none.
   const std::string& crs_wkt() const { return scattered ? points.crs_wkt : raster.grid.crs_wkt; }
+  /// What its file declares of its heights.
+  const DeclaredHeights& heights() const { return scattered ? points.heights : on_disk->heights(); }
   /// What its cells or points cover, in their own CRS [m].
   Extent extent() const;
   /// Width of its cells [m]; 0 for points, which have none.

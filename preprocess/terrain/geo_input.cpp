@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <initializer_list>
 #include <utility>
@@ -29,13 +30,23 @@ bool is_text(const std::filesystem::path& file) {
 }
 
 void to_metres(ScatteredPoints& points, const std::filesystem::path& file, const std::string& vertical_unit) {
-  const bool named = !points.unit.empty();
-  const std::string& unit = named ? points.unit : vertical_unit;
-  const double metres = metres_in(unit).value_or(1.0);
+  const DeclaredHeights& axis = points.heights;
+  const char* const what = points.are_depths ? "depths" : "heights";
+  if (axis.downwards && !points.are_depths)
+    throw DataError({file.string() + ": the vertical axis of its CRS counts downwards", "this stage needs heights",
+                     "Turn z, and give the file a CRS of heights; or name an attribute of depths \"depth\""});
+  const bool named = !points.unit.empty(), given = !named && !vertical_unit.empty();
+  const std::string& unit = named ? points.unit : given ? vertical_unit : axis.unit;
+  const double metres = named || given ? metres_in(unit).value_or(1.0) : axis.metres > 0 ? axis.metres : 1.0;
+  constexpr double between_feet = 1e-5;
+  if (axis.metres > 0 && std::abs(metres / axis.metres - 1) > between_feet)
+    warn("vertical-unit",
+         fmt::format("{}: {} are taken to be in {} ({}), though the vertical axis of its CRS says {}", file.string(),
+                     what, unit, named ? "the name of their column" : "vertical_unit", axis.unit));
   if (metres == 1.0) return;
   for (double& z : points.z) z *= metres;
-  log_info(fmt::format("{}: {} {} {}, converted to metres (x {:.10g})", file.string(),
-                       points.are_depths ? "depths" : "heights", named ? "are in" : "taken as", unit, metres));
+  log_info(fmt::format("{}: {} {} {}, converted to metres (x {:.10g})", file.string(), what,
+                       given ? "taken as" : "are in", unit, metres));
 }
 
 std::string lower(std::string_view text) {
@@ -161,7 +172,13 @@ ScatteredPoints read_points_as_given(const std::filesystem::path& file, PointHei
   }
   PointLayer layer = read_point_layer(file, attributes);
   const HeightName z = height_name(layer.z_name).value_or(HeightName{});
-  return {std::move(layer.x), std::move(layer.y), std::move(layer.z), std::move(layer.crs_wkt), z.depth, z.unit};
+  return {.x = std::move(layer.x),
+          .y = std::move(layer.y),
+          .z = std::move(layer.z),
+          .crs_wkt = std::move(layer.crs_wkt),
+          .are_depths = z.depth,
+          .unit = z.unit,
+          .heights = std::move(layer.heights)};
 }
 
 ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file) {
@@ -178,6 +195,7 @@ ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::p
 
 ScatteredPoints read_points(const std::filesystem::path& file, const ReadOptions& how, PointHeights heights) {
   ScatteredPoints points = read_points_as_given(file, heights);
+  points.heights.file = file;
   to_metres(points, file, how.vertical_unit);
   if (how.to_crs.empty()) {
     require_metric(points, file, how.or_else);

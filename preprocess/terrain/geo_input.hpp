@@ -16,10 +16,11 @@ namespace talus::preprocess {
 
 /// Elevations, or depths, at scattered places.
 struct ScatteredPoints {
-  std::vector<double> x, y, z;  // [m]
-  std::string crs_wkt;          // empty = local metric coordinates
-  bool are_depths = false;      // by the name of their column: z is counted down from the ground
-  std::string unit = {};        // of z, by the name of its column; "" = not said
+  std::vector<double> x, y, z;   // [m]
+  std::string crs_wkt;           // empty = local metric coordinates
+  bool are_depths = false;       // by the name of their column: z is counted down from the ground
+  std::string unit = {};         // of z, by the name of its column; "" = not said
+  DeclaredHeights heights = {};  // what the file's CRS says of them
   /// The rectangle around all points, in their own CRS.
   Extent extent() const;
 };
@@ -43,8 +44,8 @@ ScatteredPoints read_points_as_given(const std::filesystem::path& file,
 /// A text file cannot name its CRS; places that all could be longitude and latitude are taken for that, with a warning.
 ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file);
 
-/// read_points_as_given(), in metres: z by the unit in the name of its column, else by `how.vertical_unit`; places in
-/// degrees or feet moved to `how.to_crs`, and refused where that is empty.
+/// read_points_as_given(), in metres: z by the unit in the name of its column, else by `how.vertical_unit`, else by the
+/// vertical axis of the file's CRS; places in degrees or feet moved to `how.to_crs`, and refused where that is empty.
 ScatteredPoints read_points(const std::filesystem::path& file, const ReadOptions& how = {},
                             PointHeights heights = PointHeights::elevations);
 

@@ -48,6 +48,26 @@ test_what_a_run_is_warned_of_at_its_end_stands_in_its_results() {
   done
 }
 
+# The surveys that fail, and the one that the run is scored by.
+test_other_vertical_datums_are_refused_by_name_in_both_stages() {
+  need_tool gdal_translate
+  scene
+  gdal_translate -q -a_srs EPSG:32633+5773 before.asc before.tif
+  gdal_translate -q -a_srs EPSG:32633+3855 after.asc after.tif
+  sed -i 's/asc"/tif"/; s/^thickness = .*/after_dem = "after.tif"/' recipe.toml
+  expect_exit 3 preprocess
+  expect_words 'after.tif: heights above the EGM2008 geoid, while those of before.tif are above the EGM96 geoid' \
+    'gdalwarp -s_srs EPSG:32633+3855 -t_srs EPSG:32633+5773' 'accept = ["different-vertical-datums"] in [preprocess]'
+  sed -i 's/^\[preprocess\]/&\naccept = ["different-vertical-datums"]/' recipe.toml
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  expect_exit 3 postprocess
+  expect_words 'EGM2008 geoid' 'those of before.tif are above the EGM96 geoid' \
+    'accept = ["different-vertical-datums"] in [postprocess]'
+  sed -i 's/^\[postprocess.survey\]/[postprocess]\naccept = ["different-vertical-datums"]\n&/' recipe.toml
+  expect_exit 0 postprocess
+}
+
 test_mass_that_its_weight_squashes_is_refused_by_name() {
   scene_with solve.material 'youngs_modulus_Pa = 1.0e4'
   expect_exit 3 solve

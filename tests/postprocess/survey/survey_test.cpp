@@ -4,10 +4,12 @@
 #include "postprocess/survey/survey.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
+#include "common/gis/raster_file.hpp"
 
 #include "postprocess/fields/fields.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/common/geojson.hpp"
+#include "tests/common/heights.hpp"
 #include "tests/postprocess/scene.hpp"
 
 namespace talus::postprocess {
@@ -39,7 +41,9 @@ struct SurveyTest : test::InScratch {
   std::filesystem::path everywhere(const std::string& name, const MapGrid& grid, double value) {
     return raster(name, grid, std::vector<double>(grid.count(), value));
   }
-  std::optional<Survey> read() const { return read_survey(options_, run_.maps, 1.0); }
+  std::optional<Survey> read(const DeclaredHeights& ground = {}) const {
+    return read_survey(options_, run_.maps, 1.0, ground);
+  }
   std::string fault() const {
     return data_fault([&] { read(); });
   }
@@ -206,6 +210,21 @@ TEST_F(SurveyTest, brings_dems_in_degrees_to_the_runs_crs) {
   EXPECT_TRUE(same_crs(survey->grid.crs_wkt, run.crs_wkt));
   EXPECT_NEAR(survey->grid.cell, 9.3, 0.06);  // of 7.7 x 11.1 m
   EXPECT_NEAR(survey->deposit[survey->grid.index(survey->grid.columns / 2, survey->grid.rows / 2)], 3, 1e-9);
+}
+
+TEST_F(SurveyTest, compares_the_vertical_datums_of_both_surfaces) {
+  const auto level = [&](const char* name, double height, const char* crs) {
+    const MapGrid& grid = run_.maps.grid;
+    return test::write_in_crs(scratch, name, {grid, std::vector<double>(grid.count(), height)}, crs);
+  };
+  const auto of = [](const std::filesystem::path& file) { return RasterFile(file).heights(); };
+  options_.before_dem = level("before", 1000, "EPSG:32632+3855");
+  options_.after_dem = level("after", 1003, "EPSG:32632+5773");
+  EXPECT_TRUE(holds(fault(), {"./after.vrt", "EGM96 geoid", "./before.vrt", "EGM2008 geoid"}));
+  const DeclaredHeights same = of(options_.after_dem), other = of(options_.before_dem);
+  options_.before_dem.clear();
+  EXPECT_TRUE(read(same));
+  EXPECT_TRUE(holds(data_fault([&] { read(other); }), {"EGM96 geoid", "EGM2008 geoid"}));
 }
 
 TEST_F(SurveyTest, fills_polygons_and_leaves_their_holes) {
