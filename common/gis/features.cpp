@@ -59,20 +59,21 @@ std::vector<Ring> rings_of(const OGRPolygon& polygon, const fs::path& file) {
   return rings;
 }
 
-std::vector<std::string> names_of_fields(OGRLayer& layer) {
-  const OGRFeatureDefn& fields = *layer.GetLayerDefn();
+std::vector<std::string> names_of_fields(const gdal::VectorLayer& from) {
+  const OGRFeatureDefn& fields = *from.layer().GetLayerDefn();
   std::vector<std::string> names;
-  for (int i = 0; i < fields.GetFieldCount(); ++i) names.emplace_back(fields.GetFieldDefn(i)->GetNameRef());
+  for (int i = 0; i < fields.GetFieldCount(); ++i) names.push_back(from.text(fields.GetFieldDefn(i)->GetNameRef()));
   return names;
 }
 
-MapPolygon attributes_of(const OGRFeature& feature) {
+MapPolygon attributes_of(const gdal::VectorLayer& from, const OGRFeature& feature) {
   MapPolygon polygon;
   for (int i = 0; i < feature.GetFieldCount(); ++i) {
     if (!feature.IsFieldSetAndNotNull(i)) continue;
     const OGRFieldDefn& field = *feature.GetFieldDefnRef(i);
-    if (EQUAL(field.GetNameRef(), "name")) polygon.name = feature.GetFieldAsString(i);
-    if (gdal::is_numeric(feature, i)) polygon.numbers.emplace_back(field.GetNameRef(), feature.GetFieldAsDouble(i));
+    if (EQUAL(field.GetNameRef(), "name")) polygon.name = from.text(feature.GetFieldAsString(i));
+    if (gdal::is_numeric(feature, i))
+      polygon.numbers.emplace_back(from.text(field.GetNameRef()), feature.GetFieldAsDouble(i));
   }
   return polygon;
 }
@@ -95,8 +96,7 @@ struct LeftOut {
         "shapes-left-out",
         fmt::format("{}: layer \"{}\" has {} no {}, left out ({}{}). Draw a {} each, or choose features by a condition "
                     "(FILE|subset=CONDITION)",
-                    from.file().string(), from.layer().GetName(), what, wanted, count == 1 ? "" : "the first is ",
-                    first, wanted),
+                    from.file().string(), from.name(), what, wanted, count == 1 ? "" : "the first is ", first, wanted),
         {{"shapes", static_cast<double>(count), "1"}});
   }
 };
@@ -110,7 +110,7 @@ std::vector<MapPolygon> polygons_of(const gdal::VectorLayer& from, const OGRFeat
     return polygons;
   }
   gdal::for_each_part(*shape, [&](const OGRGeometry& part) {
-    MapPolygon polygon = attributes_of(feature);
+    MapPolygon polygon = attributes_of(from, feature);
     const bool fits = wkbFlatten(part.getGeometryType()) == wkbPolygon;
     if (fits) polygon.rings = rings_of(*part.toPolygon(), from.file());
     if (polygon.rings.empty())
@@ -188,16 +188,16 @@ std::vector<MapPolygon> read_polygons(const fs::path& source, const std::string&
 
 std::vector<PolygonFeature> read_polygon_features(const fs::path& source, const std::string& crs_wkt) {
   const gdal::VectorLayer from(source, crs_wkt);
-  const std::string file = from.file().string(), id = from.layer().GetFIDColumn();
+  const std::string file = from.file().string(), id = from.text(from.layer().GetFIDColumn());
   std::vector<PolygonFeature> features;
   LeftOut left_out;
   for (const auto& feature : from.layer()) {
     const std::string where = fmt::format("{} = {}", id.empty() ? "FID" : '"' + id + '"', feature->GetFID());
-    features.push_back({.source = VectorSource{from.file(), from.layer().GetName(), where}.text(),
+    features.push_back({.source = VectorSource{from.file(), from.name(), where}.text(),
                         .place = fmt::format("{}, feature {}", file, feature->GetFID()),
                         .number = feature->GetFID(),
                         .polygons = polygons_of(from, *feature, left_out),
-                        .values = gdal::values_of(*feature)});
+                        .values = gdal::values_of(from, *feature)});
   }
   from.require_whole();
   left_out.warn_of(from, "polygon");
@@ -218,7 +218,7 @@ std::vector<MapLine> read_lines(const fs::path& source, const std::string& crs_w
 }
 
 std::vector<std::string> field_names(const std::filesystem::path& source) {
-  return names_of_fields(gdal::VectorLayer(source, "").layer());
+  return names_of_fields(gdal::VectorLayer(source, ""));
 }
 
 std::vector<TextField> text_fields(const std::filesystem::path& source,
@@ -229,8 +229,8 @@ std::vector<TextField> text_fields(const std::filesystem::path& source,
   for (const auto& feature : from.layer()) {
     ++number;
     for (int i = 0; i < feature->GetFieldCount(); ++i) {
-      const std::string text = feature->GetFieldAsString(i);
-      const char* name = feature->GetFieldDefnRef(i)->GetNameRef();
+      const std::string text = from.text(feature->GetFieldAsString(i));
+      const std::string name = from.text(feature->GetFieldDefnRef(i)->GetNameRef());
       if (!text.empty() && wanted(name) && !gdal::is_numeric(*feature, i)) found.push_back({number, name, text});
     }
   }
@@ -241,7 +241,7 @@ PlaceLayer read_place_layer(const fs::path& source, const std::string& crs_wkt) 
   const gdal::VectorLayer from(source, crs_wkt);
   OGRLayer& layer = from.layer();
   const std::string file = from.file().string();
-  PlaceLayer found{.name = layer.GetName(), .crs_wkt = {}, .fields = names_of_fields(layer), .features = {}};
+  PlaceLayer found{.name = from.name(), .crs_wkt = {}, .fields = names_of_fields(from), .features = {}};
   if (const OGRSpatialReference* own = layer.GetSpatialRef();
       own != nullptr && !own->IsEmpty() && own->IsLocal() == 0)  // local coordinates are anybody's
     found.crs_wkt = gdal::horizontal_wkt(own);
@@ -250,7 +250,7 @@ PlaceLayer read_place_layer(const fs::path& source, const std::string& crs_wkt) 
     PlaceFeature one{.place = fmt::format("{}, feature {}", file, feature->GetFID()),
                      .number = feature->GetFID(),
                      .points = {},
-                     .values = gdal::values_of(*feature)};
+                     .values = gdal::values_of(from, *feature)};
     if (const auto fault = set_points(file, from.shape_of(*feature).get(), one.points))
       faults.push_back({one.place + ": " + fault->what, fault->why, fault->mend});
     else

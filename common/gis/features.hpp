@@ -100,6 +100,9 @@ class VectorLayer {
   OGRLayer& layer() const;  ///< its features that meet the condition
   const std::filesystem::path& file() const { return source_.file; }
   const std::string& where() const { return source_.where; }
+  std::string name() const;  ///< of the layer, UTF-8
+  /// Text of the layer as UTF-8. What is none is taken as CP1252, with a warning that names the file.
+  std::string text(const char* bytes) const;
   /// A shape as chords, carried to the other CRS; none: the feature has none. Throws DataError.
   std::unique_ptr<OGRGeometry> shape_of(const OGRFeature& feature) const;
   void require_whole() const;  ///< throws DataError where a call has failed on the way
@@ -121,8 +124,8 @@ OGRPolygon ogr_polygon(const MapPolygon& polygon);
 /// Text that is a number as a whole counts as one.
 bool is_numeric(const OGRFeature& feature, int field);
 
-/// The attributes of a feature.
-std::vector<FeatureValue> values_of(const OGRFeature& feature);
+/// The attributes of a feature, their text as UTF-8.
+std::vector<FeatureValue> values_of(const VectorLayer& from, const OGRFeature& feature);
 
 }  // namespace talus::gdal
 namespace talus {

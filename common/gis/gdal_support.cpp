@@ -13,6 +13,7 @@
 #include <mutex>
 
 #include "common/stage/stage.hpp"
+#include "common/text_encoding.hpp"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)  // clang's word
@@ -113,7 +114,7 @@ std::string horizontal_wkt(const OGRSpatialReference* srs) {
   const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* wkt = nullptr;
   const bool exported = flat.exportToWkt(&wkt, options.data()) == OGRERR_NONE;
-  std::string text = exported && wkt != nullptr ? wkt : "";
+  std::string text = exported && wkt != nullptr ? as_utf8(wkt) : "";
   CPLFree(wkt);
   return text;
 }
@@ -123,7 +124,7 @@ std::string short_name(const OGRSpatialReference& srs) {
   const char* code = srs.GetAuthorityCode(nullptr);
   if (authority != nullptr && code != nullptr) return fmt::format("{}:{}", authority, code);
   const char* name = srs.GetName();
-  return name != nullptr && *name != '\0' ? name : "an unnamed CRS";
+  return name != nullptr && *name != '\0' ? as_utf8(name) : "an unnamed CRS";
 }
 
 Transformation transformation(const OGRSpatialReference& from, const OGRSpatialReference& to) {

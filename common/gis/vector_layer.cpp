@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <ogrsf_frmts.h>
@@ -8,15 +10,27 @@
 #include "common/gis/features.hpp"
 #include "common/gis/gdal_support.hpp"
 #include "common/gis/local_only.hpp"
+#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/signals.hpp"
+#include "common/text_encoding.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
 namespace {
 
+/// XML says its encoding, and its readers go by that.
+void refuse_wide_text(const fs::path& file) {
+  const std::string start = start_of(file, 64);
+  const std::string_view encoding = wide_encoding(start);
+  if (encoding.empty() || start.find('<') < 4) return;
+  throw DataError({fmt::format("{}: its text is {}", file.string(), encoding), "UTF-8 is wanted",
+                   mend_of_encoding(encoding, file.string())});
+}
+
 Dataset open_vector(const fs::path& file) {
   require_local(file);
+  refuse_wide_text(file);
   const QuietErrors errors;
   Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (dataset && dataset->GetLayerCount() > 0) return dataset;
@@ -32,7 +46,10 @@ OGRLayer* layer_of(GDALDataset& dataset, const VectorSource& source, const std::
   const std::string& name = source.layer.empty() ? usual : source.layer;
   if (OGRLayer* named = name.empty() ? nullptr : dataset.GetLayerByName(name.c_str())) return named;
   std::vector<std::string> there;
-  for (auto* layer : dataset.GetLayers()) there.emplace_back(layer->GetName());
+  for (auto* layer : dataset.GetLayers()) {
+    there.push_back(as_utf8(layer->GetName()));
+    if (there.back() == name) return layer;
+  }
   if (source.layer.empty()) {
     if (there.size() > 1)
       warn("layers-left-out", fmt::format("{}: layer \"{}\" is read, the first of {}. Say which one is meant: "
@@ -42,6 +59,23 @@ OGRLayer* layer_of(GDALDataset& dataset, const VectorSource& source, const std::
   }
   throw DataError({fmt::format("{}: no layer \"{}\" in it", source.file.string(), name),
                    fmt::format("it has {}", fmt::join(there, ", ")), "Name one that is there"});
+}
+
+/// Whether all text of a layer is UTF-8: names of attributes and values.
+bool is_all_utf8(OGRLayer& layer) {
+  const OGRFeatureDefn& fields = *layer.GetLayerDefn();
+  for (int i = 0; i < fields.GetFieldCount(); ++i)
+    if (!is_utf8(fields.GetFieldDefn(i)->GetNameRef())) return false;
+  for (const auto& feature : layer)
+    for (int i = 0; i < fields.GetFieldCount(); ++i)
+      if (fields.GetFieldDefn(i)->GetType() == OFTString && !is_utf8(feature->GetFieldAsString(i))) return false;
+  return true;
+}
+
+/// A condition with the bytes of the layer's text, to which OGR compares it.
+std::string as_in(OGRLayer& layer, const std::string& where) {
+  const bool ascii = std::ranges::all_of(where, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  return ascii || is_all_utf8(layer) ? where : as_cp1252(where);
 }
 
 /// The way from a layer's CRS to another; none where one of them is not named.
@@ -69,7 +103,8 @@ VectorLayer::VectorLayer(const fs::path& text, const std::string& crs_wkt, const
     : source_(vector_source(text)), opened_(std::make_unique<Opened>(file())) {
   opened_->dataset = open_vector(file());
   opened_->layer = layer_of(*opened_->dataset, source_, usual);
-  if (!where().empty() && (layer().SetAttributeFilter(where().c_str()) != OGRERR_NONE || opened_->errors.failed()))
+  if (!where().empty() &&
+      (layer().SetAttributeFilter(as_in(layer(), where()).c_str()) != OGRERR_NONE || opened_->errors.failed()))
     throw DataError({fmt::format("{}: the condition {} cannot be understood", file().string(), where()),
                      opened_->errors.text(),
                      "Write it with the names of attributes: id = 12, or state = 'active'; ogrinfo -so lists them"});
@@ -92,6 +127,23 @@ std::unique_ptr<OGRGeometry> VectorLayer::shape_of(const OGRFeature& feature) co
                        file().string()});
 }
 
+std::string VectorLayer::name() const { return text(layer().GetName()); }
+
+std::string VectorLayer::text(const char* bytes) const {
+  if (!is_utf8(bytes)) {
+    const std::string name = file().string();
+    const bool shapefile = file().extension() == ".shp" || file().extension() == ".dbf";
+    warn("text-encoding",
+         fmt::format(
+             "{}: its text is not UTF-8 and is taken as CP1252 (Western European). Where letters come out wrong, "
+             "{}",
+             name,
+             shapefile ? "name its encoding: echo CP1250 > " + fs::path(file()).replace_extension(".cpg").string()
+                       : "save the file again with the encoding UTF-8"));
+  }
+  return as_utf8(bytes);
+}
+
 void VectorLayer::require_whole() const {
   if (opened_->errors.failed())
     throw DataError({file().string() + ": cannot be read to its end", opened_->errors.text(),
@@ -100,7 +152,7 @@ void VectorLayer::require_whole() const {
 
 Fault VectorLayer::none_found(const std::string& what, const std::string& other, const std::string& mend) const {
   const char* nothing = where().empty() ? "the layer is empty" : "none meets it";
-  return {fmt::format("{}: no {} in layer \"{}\"{}", file().string(), what, layer().GetName(),
+  return {fmt::format("{}: no {} in layer \"{}\"{}", file().string(), what, name(),
                       where().empty() ? "" : " whose attributes meet " + where()),
           other.empty() ? nothing : "it holds " + other, mend + " (FILE|layername=LAYER|subset=CONDITION)"};
 }
@@ -127,12 +179,12 @@ bool is_numeric(const OGRFeature& feature, int field) {
          (type == OFTString && CPLGetValueType(feature.GetFieldAsString(field)) != CPL_VALUE_STRING);
 }
 
-std::vector<FeatureValue> values_of(const OGRFeature& feature) {
+std::vector<FeatureValue> values_of(const VectorLayer& from, const OGRFeature& feature) {
   std::vector<FeatureValue> values;
   for (int i = 0; i < feature.GetFieldCount(); ++i) {
-    FeatureValue value{.name = feature.GetFieldDefnRef(i)->GetNameRef(), .number = {}, .text = {}};
+    FeatureValue value{.name = from.text(feature.GetFieldDefnRef(i)->GetNameRef()), .number = {}, .text = {}};
     value.is_null = !feature.IsFieldSetAndNotNull(i);
-    if (!value.is_null) value.text = feature.GetFieldAsString(i);
+    if (!value.is_null) value.text = from.text(feature.GetFieldAsString(i));
     if (!value.is_null && is_numeric(feature, i)) value.number = feature.GetFieldAsDouble(i);
     values.push_back(std::move(value));
   }
@@ -162,7 +214,7 @@ bool is_point(const OGRGeometry* geometry) {
 }
 
 std::string name_of(const OGRFeatureDefn& fields, int field) {
-  return const_cast<OGRFeatureDefn&>(fields).GetFieldDefn(field)->GetNameRef();
+  return as_utf8(const_cast<OGRFeatureDefn&>(fields).GetFieldDefn(field)->GetNameRef());
 }
 
 int field_of(const OGRFeatureDefn& fields, const std::function<bool(std::string_view)>& is_wanted) {

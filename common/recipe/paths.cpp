@@ -7,6 +7,9 @@
 #include <string_view>
 #include <utility>
 
+#include "common/error.hpp"
+#include "common/text_encoding.hpp"
+
 namespace talus {
 namespace {
 
@@ -105,6 +108,13 @@ std::string without_absolute_paths(const std::string& text) {
     at = end;
   }
   return result;
+}
+
+void refuse_name_beyond_utf8(const std::filesystem::path& path) {
+  if (is_utf8(path.string())) return;
+  throw RecipeError({as_utf8(path.string()) + ": the name of this file or of a folder above it is not UTF-8",
+                     "results record it, and other programs could not read them",
+                     "Rename it: convmv -f cp1252 -t utf8 --notest NAME, or mv"});
 }
 
 std::filesystem::path VectorSource::text() const {

@@ -56,6 +56,9 @@ std::string with_shown_paths(const std::string& text);
 /// behind an ellipsis, so that a page which is sent on tells nothing of the folders of a machine.
 std::string without_absolute_paths(const std::string& text);
 
+/// Throws RecipeError where a path is no UTF-8: results record paths.
+void refuse_name_beyond_utf8(const std::filesystem::path& path);
+
 /// "slides.gpkg|layername=release|subset=id = 12"; layer and condition may be left out.
 struct VectorSource {
   std::filesystem::path file;

@@ -12,6 +12,7 @@
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/recipe/suggest.hpp"
+#include "common/text_encoding.hpp"
 #include "common/whole_text.hpp"
 
 namespace talus::recipe {
@@ -75,6 +76,11 @@ toml::table toml_of(std::string_view text, const std::string& shown) {
   try {
     return toml::parse(text, shown);
   } catch (const toml::parse_error& error) {
+    const std::string_view wide = wide_encoding(text), encoding = wide.empty() && !is_utf8(text) ? "CP1252" : wide;
+    if (!encoding.empty())
+      throw RecipeError(Fault{place(shown, error.source()) + ": the recipe is not UTF-8",
+                              wide.empty() ? "it may be CP1252 (Western European)" : fmt::format("it is {}", wide),
+                              mend_of_encoding(encoding, shown)});
     throw RecipeError(Fault{place(shown, error.source()) + ": this is not TOML", std::string(error.description()),
                             "Mend the line; the format is described on https://toml.io"});
   }
@@ -160,6 +166,7 @@ std::unique_ptr<Recipe::Parsed> Recipe::parsed(std::string_view text, const fs::
 
 Recipe::Recipe(const fs::path& file, const std::vector<std::string>& overrides)
     : parsed_(parsed(contents_of(file), file, file.string(), overrides)) {
+  refuse_name_beyond_utf8(parsed_->file);
   show_path_as(parsed_->file, parsed_->shown, file.filename().string());
   show_path_as(parsed_->file.parent_path(), file.parent_path().string(), "");
 }

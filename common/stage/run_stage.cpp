@@ -286,6 +286,7 @@ StageContext open_call(const Stage& stage, const StageCall& call) {
                       .command_line = call.command.empty() ? command_of(stage, call) : call.command};
   const fs::path beside = opened.recipe.file().parent_path() / "out";
   opened.out = call.out.empty() ? beside : fs::absolute(call.out).lexically_normal();
+  refuse_name_beyond_utf8(opened.out);
   if (!call.out.empty()) show_path_as(opened.out, call.out.lexically_normal().string(), call.out.filename().string());
   if (stage.part) opened.part = stage.part();
   return opened;

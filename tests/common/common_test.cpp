@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
+#include "common/text_encoding.hpp"
 #include "common/whole_text.hpp"
 #include "tests/common/scratch.hpp"
 
@@ -27,6 +28,36 @@ TEST(WholeText, without_end_is_given_up) {
   const auto refuse = [](const std::string& reason) { throw DataError({"text", reason, "mend"}); };
   EXPECT_TRUE(test::holds(test::fault_of<DataError>([&] { whole_text("/dev/zero", 1 << 20, refuse); }),
                           {"it is longer than 1 MB"}));
+}
+
+TEST(TextEncoding, takes_what_is_no_utf8_as_cp1252) {
+  for (const char* utf8 : {"", "plain", "H\u00f6lle", "\u20ac", "\U0001F3D4", "\u65e5\u672c"}) {
+    EXPECT_TRUE(is_utf8(utf8)) << utf8;
+    EXPECT_EQ(as_utf8(utf8), utf8);
+  }
+  for (const char* none : {"H\xf6lle", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\x80", "\xff"}) {
+    EXPECT_FALSE(is_utf8(none)) << none;
+    EXPECT_TRUE(is_utf8(as_utf8(none))) << none;
+  }
+  EXPECT_EQ(as_utf8("H\xf6lle \x80 \x96 \x8a"), "H\u00f6lle \u20ac \u2013 \u0160");
+  EXPECT_EQ(as_utf8("\xc2\x80"), "\u20ac") << "declared as ISO 8859-1";
+  EXPECT_EQ(as_utf8("\x81"), "\ufffd") << "CP1252 has no such character";
+  for (const char* both : {"H\xf6lle \x80 \x96 \x8a", "plain"}) EXPECT_EQ(as_cp1252(as_utf8(both)), both);
+  EXPECT_EQ(as_cp1252("\u65e5\ufffd\u0080"), "???");
+}
+
+TEST(TextEncoding, knows_wide_text_by_its_mark_or_its_zeros) {
+  using namespace std::string_literals;
+  EXPECT_EQ(wide_encoding("\xff\xfe"
+                          "a\0"s),
+            "UTF-16");
+  EXPECT_EQ(wide_encoding("\xfe\xff\0a"s), "UTF-16");
+  EXPECT_EQ(wide_encoding("\xff\xfe\0\0"s), "UTF-32");
+  EXPECT_EQ(wide_encoding("n\0a\0m\0e\0"s), "UTF-16LE");
+  EXPECT_EQ(wide_encoding("\0n\0a\0m\0e"s), "UTF-16BE");
+  for (const auto& other :
+       {"name,t\n1,2"s, "SQLite format 3\0"s, "\0\0\x27\x0a\0\0\0\0"s, "II*\0\x08\0\0\0"s, ""s, "a\0"s})
+    EXPECT_EQ(wide_encoding(other), "") << other;
 }
 
 }  // namespace
