@@ -18,6 +18,8 @@
 #include "common/error.hpp"
 #include "common/gis/escaped_xml.hpp"
 #include "common/stage/files.hpp"
+#include "common/table_words.hpp"
+#include "common/text_encoding.hpp"
 
 namespace talus {
 namespace {
@@ -143,6 +145,8 @@ std::optional<AsciiHeader> written(Gathered&& g) {
   if (!west || !south) return std::nullopt;
   const bool one_kind = g.values.contains("west") == g.values.contains("south");
   AsciiHeader header = std::move(g.header);
+  header.columns = *columns;
+  header.rows = *rows;
   header.usual = header.usual && one_kind;
   header.text =
       fmt::format("ncols {:.0f}\nnrows {:.0f}\nxllcorner {:.17g}\nyllcorner {:.17g}\n", *columns, *rows, *west, *south);
@@ -201,35 +205,50 @@ bool is_usual(unsigned char c) {
   return table[c];
 }
 
-/// What single cells need: a word of their own, or commas that part them.
-bool cells_need_rewriting(const fs::path& file, std::size_t body_at) {
+/// What the cells of a file are like.
+struct Cells {
+  bool need_rewriting = false;  ///< a word of their own, or commas that part them
+  bool have_commas = false;
+  double count = 0;  ///< known where they need no rewriting
+};
+
+Cells look_at_cells(const fs::path& file, std::size_t body_at) {
+  Cells cells;
   std::ifstream stream(file, std::ios::binary);
   stream.seekg(static_cast<std::streamoff>(body_at));
   std::string text(chunk, '\0');
   int commas = 0;  // in the word so far, as all that follows
-  bool point = false, digits = false, signs = false;
+  bool point = false, digits = false, signs = false, in_word = false;
   std::string letters;
   while (stream.read(text.data(), static_cast<std::streamsize>(text.size())), stream.gcount() > 0) {
     for (std::streamsize i = 0; i < stream.gcount(); ++i) {
       const auto c = static_cast<unsigned char>(text[static_cast<std::size_t>(i)]);
-      if (!is_usual(c)) return true;
+      cells.need_rewriting = !is_usual(c);
+      if (cells.need_rewriting) return cells;
       if (c <= ' ') {
+        cells.count += in_word ? 1 : 0;
+        in_word = false;
         // A word without digits: "nan" and "inf", which GDAL knows, or "NA" and "-", which it does not.
-        if ((!letters.empty() || signs) && !digits && letters != "nan" && letters != "inf") return true;
+        cells.need_rewriting = (!letters.empty() || signs) && !digits && letters != "nan" && letters != "inf";
+        if (cells.need_rewriting) return cells;
         commas = 0, point = digits = signs = false;
         letters.clear();
         continue;
       }
+      in_word = c != 0x1a;
       commas += c == ',';
+      cells.have_commas = cells.have_commas || c == ',';
       point = point || c == '.';
       digits = digits || (c >= '0' && c <= '9');
       if (std::isalpha(c) != 0) letters += static_cast<char>(std::tolower(c));
       signs = signs || c == '-' || c == '+';
-      if (commas > 1 || (commas > 0 && point)) return true;
+      cells.need_rewriting = commas > 1 || (commas > 0 && point);
+      if (cells.need_rewriting) return cells;
     }
   }
+  cells.count += in_word ? 1 : 0;
   require_read(stream, file);
-  return false;
+  return cells;
 }
 
 /// A file's cells, one word at a time, with where they stand.
@@ -238,7 +257,7 @@ class Words {
   Words(const fs::path& file, std::size_t at) : file_(file), stream_(file, std::ios::binary) {
     std::string start(at, '\0');
     stream_.read(start.data(), static_cast<std::streamsize>(at));
-    for (const char c : start) line_ += c == '\n';
+    for (const char c : start) count(c);
   }
   bool next(std::string& word) {
     word.clear();
@@ -246,48 +265,104 @@ class Words {
       const bool parts = c <= ' ' || c == ';' || c == 0x1a;
       if (parts && !word.empty()) {
         if (c == '\n') stream_.unget();  // counted when the next word is looked for
+        if (c != '\n') count(c);
         return true;
       }
-      line_ += c == '\n';
-      if (!parts) word += static_cast<char>(c);
+      count(c);
+      if (parts) continue;
+      if (word.empty()) begin_ = column_;
+      word += static_cast<char>(c);
     }
     require_read(stream_, file_);
     return !word.empty();
   }
   int line() const { return line_; }
+  std::size_t column() const { return begin_; }  ///< where the word begins, from 1
 
  private:
+  void count(int c) {
+    line_ += c == '\n';
+    column_ = c == '\n' ? 0 : column_ + 1;
+  }
+
   const fs::path& file_;
   std::ifstream stream_;
   int line_ = 1;
+  std::size_t column_ = 0, begin_ = 1;
 };
+
+[[noreturn]] void refuse_cell(const fs::path& file, const Words& words, const std::string& word, const std::string& why,
+                              const std::string& mend) {
+  throw DataError({fmt::format("{}: line {}, column {}: \"{:.40}\"", file.string(), words.line(), words.column(), word),
+                   why, mend});
+}
+
+/// Refuses a file of more cells than its header names, at the first line that has more than a row, else at the first
+/// cell too many.
+[[noreturn]] void refuse_surplus(const fs::path& file, const AsciiHeader& header, double count) {
+  const std::string why = fmt::format(
+      "with it the cells are {:.0f}, and the header names {:.0f} x {:.0f}: a sign that parts thousands makes "
+      "two cells of one, or the header is of another grid",
+      count, header.columns, header.rows);
+  for (const bool by_line : {true, false}) {
+    Words words(file, header.body_at);
+    double all = 0, of_line = 0;
+    int line = 0;
+    for (std::string word; words.next(word); line = words.line()) {
+      const double cells = 1 + static_cast<double>(std::count(word.begin(), word.end(), ','));
+      of_line = cells + (words.line() == line ? of_line : 0);
+      all += cells;
+      if (by_line ? of_line > header.columns : all > header.columns * header.rows)
+        refuse_cell(file, words, word, why, "Write thousands without a sign, or mend ncols and nrows");
+    }
+  }
+  throw DataError({file.string() + ": more cells than its header names", why, "Mend ncols and nrows"});
+}
+
+/// Refuses decimal commas that could all part thousands, and those beside decimal points.
+void check_commas(const fs::path& file) {
+  NumberDoubts doubts;
+  const auto refuse = [&](const NumberDoubt& doubt) {
+    throw DataError(
+        {fmt::format("{}: line {}, column {}: \"{:.40}\"", file.string(), doubt.line, doubt.column, doubt.written),
+         doubt.why, doubt.mend});
+  };
+  Words words(file, 0);
+  for (std::string word; words.next(word);)
+    if (ascii_number(word))
+      if (const auto doubt = doubts.look(word, words.line(), words.column())) refuse(*doubt);
+  if (const auto doubt = doubts.left()) refuse(*doubt);
+}
 
 struct Rewriting {
   const fs::path& file;
   std::string nodata;
   std::string text;
+  double count = 0;  ///< of cells
 
-  void add(const std::string& word, int line) {
+  void add(const std::string& word, const Words& words) {
+    ++count;
     if (is_word_for_nodata(word)) {
       text += nodata;
     } else if (const auto value = ascii_number(word)) {
       text += std::isnan(*value) ? "nan" : fmt::format("{:.17g}", *value);
     } else {
-      throw DataError({fmt::format("{}: line {}: \"{}\"", file.string(), line, word.substr(0, 40)),
-                       "a cell of an ASCII grid is a number",
-                       "Mend the line; cells without value hold the NODATA_value of the header, or *"});
+      refuse_cell(file, words, word,
+                  is_grouped(word) ? "a cell is a number without a sign that parts thousands"
+                                   : "a cell of an ASCII grid is a number",
+                  "Mend the line; cells without value hold the NODATA_value of the header, or *");
     }
     text += ' ';
   }
   /// "1.5,2.25,3": commas that part cells. "1,5" is a number.
-  void add_parted(const std::string& word, int line) {
+  void add_parted(const std::string& word, const Words& words) {
     const auto commas = std::count(word.begin(), word.end(), ',');
     const bool part = commas > 1 || (commas == 1 && (word.find('.') != std::string::npos || word.back() == ','));
-    if (!part) return add(word, line);
+    if (!part) return add(word, words);
     std::size_t at = 0;
     while (at < word.size()) {
       const std::size_t end = std::min(word.find(',', at), word.size());
-      if (end > at) add(word.substr(at, end - at), line);
+      if (end > at) add(word.substr(at, end - at), words);
       at = end + 1;
     }
   }
@@ -296,7 +371,8 @@ struct Rewriting {
 std::string rewritten(const fs::path& file, const AsciiHeader& header) {
   Rewriting rewriting{file, header.nodata.empty() ? "nan" : header.nodata, header.text};
   Words words(file, header.body_at);
-  for (std::string word; words.next(word);) rewriting.add_parted(word, words.line());
+  for (std::string word; words.next(word);) rewriting.add_parted(word, words);
+  if (rewriting.count > header.columns * header.rows) refuse_surplus(file, header, rewriting.count);
   return std::move(rewriting.text);
 }
 
@@ -330,13 +406,21 @@ fs::path projection_beside(const fs::path& file) {
 bool begins_as_ascii_grid(const fs::path& file) { return ascii_header(start_of(file, longest_header)).has_value(); }
 
 AsciiGrid::AsciiGrid(const fs::path& file) : path_(file.string()) {
-  const auto header = ascii_header(start_of(file, longest_header));
+  const std::string start = start_of(file, longest_header);
+  if (const std::string_view encoding = wide_encoding(start); !encoding.empty())
+    throw DataError({fmt::format("{}: its text is {}", path_, encoding), "a grid of text is wanted as UTF-8",
+                     mend_of_encoding(encoding, path_)});
+  const auto header = ascii_header(start);
   if (!header) return;
   is_one_ = true;
-  if (cells_need_rewriting(file, header->body_at))
+  const Cells cells = look_at_cells(file, header->body_at);
+  if (cells.need_rewriting) {
     stand_in(file, rewritten(file, *header));
-  else if (!header->usual)
-    stand_in(file, header->text, header->body_at);
+    return;
+  }
+  if (cells.count > header->columns * header->rows) refuse_surplus(file, *header, cells.count);
+  if (cells.have_commas) check_commas(file);
+  if (!header->usual) stand_in(file, header->text, header->body_at);
 }
 
 AsciiGrid::~AsciiGrid() {

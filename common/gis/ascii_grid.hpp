@@ -16,7 +16,8 @@ struct AsciiHeader {
   std::string text;         ///< in the usual form: ncols, nrows, xllcorner, yllcorner, cellsize, NODATA_value
   std::string nodata;       ///< as given; empty = none
   std::size_t body_at = 0;  ///< where the cells begin in the file
-  bool usual = true;        ///< GDAL reads the header right as it stands
+  double columns = 0, rows = 0;
+  bool usual = true;  ///< GDAL reads the header right as it stands
 };
 
 /// Nullopt when the start of a file names no columns and rows, or no place and cell.
@@ -33,8 +34,9 @@ bool begins_as_ascii_grid(const std::filesystem::path& file);
 /// open: the file itself, or a stand-in in memory with the usual header. That covers keys in any order, case and
 /// spelling (xllcentre, nbcols, nodata), one axis by corner and the other by centre, a byte-order mark, comments,
 /// colons, and decimal commas and D-exponents; where single cells hold words for nodata (*, NA) or are parted by commas
-/// or semicolons, all cells are in the stand-in, else they stay in the file. Throws DataError naming line and word for
-/// a cell that is no number.
+/// or semicolons, all cells are in the stand-in, else they stay in the file. Throws DataError naming line, column and
+/// word for a cell that is no number, for one more than the header names (thousands parted by a sign make two of one),
+/// and for decimal commas that could all part thousands, and DataError of a file in UTF-16.
 class AsciiGrid {
  public:
   explicit AsciiGrid(const std::filesystem::path& file);

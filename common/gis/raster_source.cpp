@@ -20,6 +20,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
+#include "common/stage/table_lines.hpp"
 
 namespace talus::gdal {
 namespace fs = std::filesystem;
@@ -43,6 +44,9 @@ Dataset open(const fs::path& file, const AsciiGrid& ascii) {
     throw DataError(
         {file.string() + ": not a raster that can be read", errors.text(), "Look at it: gdalinfo " + file.string()});
   }
+  if (dataset->GetDriver() != nullptr && EQUAL(dataset->GetDriver()->GetDescription(), "XYZ"))
+    for (TableLines lines(file, copy_again); lines.next();) {  // GDAL guesses at signs that part thousands
+    }
   if (dataset->GetRasterCount() == 0) {
     const char* first = CSLFetchNameValue(dataset->GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
     throw DataError({file.string() + ": holds no raster of its own",

@@ -10,7 +10,9 @@
 
 #include "common/ensemble/options.hpp"
 #include "common/error.hpp"
+#include "common/stage/findings.hpp"
 #include "common/table_words.hpp"
+#include "common/text_encoding.hpp"
 #include "common/whole_text.hpp"
 
 namespace talus::preprocess {
@@ -33,7 +35,8 @@ using Row = std::vector<CsvField>;
 /// Walks over the text of a file, field by field.
 class CsvWalk {
  public:
-  CsvWalk(const fs::path& file, const std::string& text) : file_(file), text_(text) {}
+  CsvWalk(const fs::path& file, const std::string& text) : file_(file), text_(text), separator_(separator_of(text)) {}
+  bool commas_are_decimal() const { return separator_ != ','; }
 
   /// The next row that says something; none at the end.
   std::optional<Row> next() {
@@ -57,8 +60,9 @@ class CsvWalk {
     }
     ++at_;
   }
-  bool blank() const { return at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\r'); }
-  bool ends_field() const { return at_ >= text_.size() || text_[at_] == ',' || text_[at_] == '\n'; }
+  bool is_blank(char c) const { return c != separator_ && (c == ' ' || c == '\t' || c == '\r'); }
+  bool blank() const { return at_ < text_.size() && is_blank(text_[at_]); }
+  bool ends_field() const { return at_ >= text_.size() || text_[at_] == separator_ || text_[at_] == '\n'; }
   void skip_blanks() {
     while (blank()) ++at_;
   }
@@ -68,7 +72,7 @@ class CsvWalk {
     for (;;) {
       row.push_back(read_field());
       if (at_ >= text_.size()) return row;
-      const bool more = text_[at_] == ',';
+      const bool more = text_[at_] == separator_;
       step();
       if (!more) return row;
     }
@@ -81,9 +85,7 @@ class CsvWalk {
       read_quoted(field);
     } else {
       while (!ends_field()) field.text += text_[at_++];
-      while (!field.text.empty() &&
-             (field.text.back() == ' ' || field.text.back() == '\t' || field.text.back() == '\r'))
-        field.text.pop_back();
+      while (!field.text.empty() && is_blank(field.text.back())) field.text.pop_back();
     }
     return field;
   }
@@ -103,25 +105,76 @@ class CsvWalk {
     ++at_;
     skip_blanks();
     if (!ends_field())
-      refuse_place(file_, field, "text stands behind the closing quote", "a comma or the end of the line is expected",
-                   "Double quotes within a field");
+      refuse_place(file_, field, "text stands behind the closing quote",
+                   "a separator or the end of the line is expected", "Double quotes within a field");
+  }
+
+  /// Semicolon, tab or comma, whichever of them the first line has, but for comments and what is quoted.
+  static char separator_of(const std::string& text) {
+    for (const std::string& line : lines_in(text)) {
+      if (line.starts_with('#')) continue;
+      bool quoted = false;
+      std::string bare;
+      for (const char c : line) {
+        if (c == '"') quoted = !quoted;
+        if (!quoted) bare += c;
+      }
+      if (bare.find_first_not_of(" \t\r") == std::string::npos) continue;
+      for (const char c : {';', ','})
+        if (bare.find(c) != std::string::npos) return c;
+      return bare.find('\t') == std::string::npos ? ',' : '\t';
+    }
+    return ',';
   }
 
   const fs::path& file_;
   const std::string& text_;
+  char separator_;
   std::size_t at_ = 0, begin_ = 0;
   int line_ = 1;
 };
 
-/// A file as RFC 4180 describes it: fields between commas, those in double quotes with anything in them, a doubled
-/// quote for one; blank lines and lines that begin with # are skipped, blanks around a field too. A byte order mark is
-/// passed over. Throws DataError with line and column: not readable, longer than 64 MB, an open quote, rows that have
-/// not as many fields as the first.
+/// Reads the numbers of a table that semicolons or tabs part with decimal commas too. Throws DataError with line and
+/// column: a number that can be read in two ways, or whose thousands a sign parts.
+void settle_numbers(const fs::path& file, std::vector<Row>& rows, bool decimal_commas) {
+  NumberDoubts doubts;
+  const auto refuse = [&](const NumberDoubt& doubt) {
+    const CsvField at{doubt.written, doubt.line, static_cast<int>(doubt.column)};
+    refuse_place(file, at, fmt::format("\"{}\"", doubt.written), doubt.why, doubt.mend);
+  };
+  for (Row& row : rows)
+    for (CsvField& field : row) {
+      std::string point = field.text;
+      if (decimal_commas && std::ranges::count(point, ',') == 1) std::ranges::replace(point, ',', '.');
+      if (signed_number(point)) {
+        if (const auto doubt = doubts.look(field.text, field.line, static_cast<std::size_t>(field.column)))
+          refuse(*doubt);
+        field.text = point;
+      } else if (is_grouped(field.text)) {
+        refuse_place(file, field, fmt::format("\"{}\" is no number", field.text),
+                     "a sign parts its thousands, or its decimals otherwise than by a point",
+                     "Write thousands without a sign, and a point for decimals");
+      }
+    }
+  if (const auto doubt = doubts.left()) refuse(*doubt);
+}
+
+/// A file as RFC 4180 describes it: fields between commas, semicolons or tabs, those in double quotes with anything in
+/// them, a doubled quote for one; blank lines and lines that begin with # are skipped, blanks around a field too. A
+/// byte order mark is passed over. Throws DataError with line and column: not readable, UTF-16, longer than 64 MB, an
+/// open quote, rows that have not as many fields as the first, doubtful numbers.
 std::vector<Row> read_csv(const fs::path& file) {
   std::string text = whole_text(file, std::uintmax_t{64} << 20, [&](const std::string& reason) {
     throw DataError({file.string() + ": the table cannot be read", reason, "Check the path"});
   });
+  if (const std::string_view encoding = wide_encoding(text); !encoding.empty())
+    throw DataError({fmt::format("{}: its text is {}", file.string(), encoding), "a table is wanted as UTF-8",
+                     mend_of_encoding(encoding, file.string())});
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (!is_utf8(text)) {
+    warn("text-encoding", file.string() + ": its text is not UTF-8 and is taken as CP1252 (Western European)");
+    text = as_utf8(text);
+  }
   CsvWalk walk(file, text);
   std::vector<Row> rows;
   while (auto row = walk.next()) {
@@ -130,6 +183,7 @@ std::vector<Row> read_csv(const fs::path& file) {
                    fmt::format("the first has {}", rows.front().size()), "Mend the row");
     rows.push_back(std::move(*row));
   }
+  settle_numbers(file, rows, walk.commas_are_decimal());
   return rows;
 }
 

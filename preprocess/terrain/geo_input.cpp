@@ -6,7 +6,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <utility>
 
@@ -14,10 +13,9 @@
 
 #include "common/error.hpp"
 #include "common/gis/features.hpp"
-#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
-#include "common/table_words.hpp"
+#include "common/stage/table_lines.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -225,19 +223,18 @@ std::optional<HeightName> height_name(std::string_view text) {
 }
 
 ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights heights) {
-  require_plain(file);
-  std::ifstream stream(file);
-  if (!stream) throw DataError({file.string() + ": cannot be opened", "missing or not readable", "Check the path"});
+  TableLines lines(file, "Check the path");
   ScatteredPoints points;
   Columns columns;
-  std::string line;
   bool first = true;
   std::ptrdiff_t most = 0, usual = 0;  // numbers of a line: no more than the first line names, and as many as before
-  for (int line_number = 1; std::getline(stream, line); ++line_number) {
-    const auto words = table_words(line);
-    if (words.empty()) continue;
+  while (lines.next()) {
+    const std::vector<TableWord>& words = lines.words();
+    const std::string shown = fmt::format("\"{:.60}\"", lines.text());
     if (std::exchange(first, false)) {
-      if (const auto named = columns_of_header(words, heights)) {
+      std::vector<std::string> texts;
+      for (const TableWord& word : words) texts.push_back(word.text);
+      if (const auto named = columns_of_header(texts, heights)) {
         columns = *named;
         most = std::ssize(words);
         points.are_depths = named->z.depth;
@@ -246,27 +243,29 @@ ScatteredPoints read_point_table(const std::filesystem::path& file, PointHeights
       }
     }
     const auto numbers =
-        std::ranges::count_if(words, [](const std::string& word) { return finite_number(word).has_value(); });
+        std::ranges::count_if(words, [](const TableWord& word) { return finite_number(word.text).has_value(); });
     if (usual == 0) usual = numbers;
     if (numbers > usual || (most > 0 && numbers > most))
-      throw DataError(
-          {fmt::format("{}: line {}: \"{}\" has {} numbers", file.string(), line_number, line.substr(0, 60), numbers),
-           fmt::format("the first line {} {}", most > 0 && numbers > most ? "names" : "of numbers has",
-                       most > 0 && numbers > most ? most : usual),
-           "Mend the line. Beside decimal commas, part the numbers by semicolons"});
+      lines.refuse(fmt::format("{} has {} numbers", shown, numbers),
+                   fmt::format("the first line {} {}", most > 0 && numbers > most ? "names" : "of numbers has",
+                               most > 0 && numbers > most ? most : usual),
+                   "Mend the line. Beside decimal commas, part the numbers by semicolons");
+    if (const std::size_t at = grouped_by_comma(words, lines.text()); at > 0 && most == 0 && numbers > 3)
+      lines.refuse(shown, "its first commas part numbers, or the thousands of one",
+                   "Name the columns in a first line: x,y,z and what follows; write thousands without a sign", at);
     std::array<double, 3> xyz{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto value = columns.of[i] < words.size() ? finite_number(words[columns.of[i]]) : std::nullopt;
+      const std::size_t at = columns.of[i];
+      if (at < words.size() && is_grouped(words[at].written)) lines.number(at);
+      const auto value = at < words.size() ? finite_number(words[at].text) : std::nullopt;
       if (!value)
-        throw DataError({fmt::format("{}: line {}: \"{}\"", file.string(), line_number, line.substr(0, 60)),
-                         "not three numbers x, y, z", "Mend the line, or name the columns x,y,z in a first line"});
+        lines.refuse(shown, "not three numbers x, y, z", "Mend the line, or name the columns x,y,z in a first line");
       xyz[i] = *value;
     }
     points.x.push_back(xyz[0]);
     points.y.push_back(xyz[1]);
     points.z.push_back(xyz[2]);
   }
-  require_read(stream, file);
   return points;
 }
 

@@ -5,72 +5,42 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/stage/files.hpp"
-#include "common/table_words.hpp"
+#include "common/stage/table_lines.hpp"
 
 namespace talus::solver {
 namespace {
 
-using Words = std::vector<std::string>;
+using Words = std::vector<TableWord>;
 
 /// A table of numbers under the names of its columns, which its first line gives.
-class TableReader {
+class TableReader : public TableLines {
  public:
-  TableReader(const std::filesystem::path& file, std::string mend) : file_(file), mend_(std::move(mend)) {
-    require_plain(file_);
-    stream_.open(file_);
-    if (!stream_) refuse_unopened();
-  }
+  using TableLines::TableLines;
 
-  /// Calls name_columns(words) for the first line that says something, and add_row(words) for each one after it.
+  /// Calls name_columns(words) for the first line that says something, and add_row() for each one after it.
   template <class NameColumns, class AddRow>
   void read(const NameColumns& name_columns, const AddRow& add_row) {
     std::size_t columns = 0;
-    for (std::string line; std::getline(stream_, line);) {
-      ++line_number_;
-      const Words words = table_words(line);
-      if (words.empty()) continue;
+    while (next()) {
       if (columns == 0) {
-        name_columns(words);
-        columns = words.size();
-      } else if (words.size() != columns) {
-        refuse_line(fmt::format("{} words", words.size()), fmt::format("the first line names {} columns", columns),
-                    "Mend the line");
+        name_columns(words());
+        columns = words().size();
+      } else if (words().size() != columns) {
+        refuse(fmt::format("{} words", words().size()), fmt::format("the first line names {} columns", columns),
+               "Mend the line");
       } else {
-        add_row(words);
+        add_row();
       }
     }
-    require_read(stream_, file_);
   }
-
-  double number(const std::string& word) const {
-    const std::optional<double> value = signed_number(word);
-    if (!value) refuse_line(fmt::format("\"{:.60}\"", word), "it is no finite number", "Mend the line");
-    return *value;
-  }
-
-  [[noreturn]] void refuse_line(const std::string& what, const std::string& why, const std::string& mend) const {
-    throw DataError({fmt::format("{}: line {}: {}", file_.string(), line_number_, what), why, mend});
-  }
-  [[noreturn]] void refuse_unopened() const {
-    throw DataError({file_.string() + ": cannot be opened", "missing or not readable", mend_});
-  }
-
- private:
-  const std::filesystem::path& file_;
-  std::string mend_;
-  std::ifstream stream_;
-  int line_number_ = 0;
 };
 
 constexpr std::size_t most_hydrograph_rows = 1'000'000;
@@ -82,7 +52,7 @@ class HydrographReader {
       : file_(file), table_(file, "Check file of " + place) {}
 
   Hydrograph read(double scale) {
-    table_.read([this](const Words& words) { name_columns(words); }, [this](const Words& words) { add_row(words); });
+    table_.read([this](const Words& words) { name_columns(words); }, [this] { add_row(); });
     if (times_.size() < 2)
       throw DataError({fmt::format("{}: it has {} rows of numbers", file_.string(), times_.size()),
                        "a hydrograph has two at least", "Give a constant discharge as two rows"});
@@ -93,30 +63,29 @@ class HydrographReader {
  private:
   void name_columns(const Words& words) {
     const auto place_of = [&](const char* name) {
-      const auto at = std::find(words.begin(), words.end(), name);
-      if (at == words.end() || std::count(words.begin(), words.end(), name) > 1)
-        table_.refuse_line(fmt::format("no column, or more than one, is called {}", name),
-                           "the first line names the columns", "Begin the file with the line time_s,discharge_m3_s");
+      const auto at = std::ranges::find(words, name, &TableWord::text);
+      if (at == words.end() || std::ranges::count(words, name, &TableWord::text) > 1)
+        table_.refuse(fmt::format("no column, or more than one, is called {}", name),
+                      "the first line names the columns", "Begin the file with the line time_s,discharge_m3_s");
       return static_cast<std::size_t>(std::distance(words.begin(), at));
     };
     time_at_ = place_of("time_s");
     discharge_at_ = place_of("discharge_m3_s");
   }
 
-  void add_row(const Words& words) {
-    const double time = table_.number(words[time_at_]), discharge = table_.number(words[discharge_at_]);
+  void add_row() {
+    const double time = table_.number(time_at_), discharge = table_.number(discharge_at_);
     if (!(time >= 0))
-      table_.refuse_line(fmt::format("time_s = {:g}", time), "the run begins at 0",
-                         "Count time from the start of the run");
+      table_.refuse(fmt::format("time_s = {:g}", time), "the run begins at 0", "Count time from the start of the run");
     if (!times_.empty() && !(time > times_.back()))
-      table_.refuse_line(fmt::format("time_s = {:g} after {:g}", time, times_.back()),
-                         "times must grow from row to row", "Sort the rows; a jump is two rows a moment apart");
+      table_.refuse(fmt::format("time_s = {:g} after {:g}", time, times_.back()), "times must grow from row to row",
+                    "Sort the rows; a jump is two rows a moment apart");
     if (!(discharge >= 0))
-      table_.refuse_line(fmt::format("discharge_m3_s = {:g}", discharge), "nothing is taken out through the line",
-                         "Give 0 where nothing enters");
+      table_.refuse(fmt::format("discharge_m3_s = {:g}", discharge), "nothing is taken out through the line",
+                    "Give 0 where nothing enters");
     if (times_.size() == most_hydrograph_rows)
-      table_.refuse_line(fmt::format("more than {} rows", most_hydrograph_rows), "no hydrograph needs so many",
-                         "Give every tenth row");
+      table_.refuse(fmt::format("more than {} rows", most_hydrograph_rows), "no hydrograph needs so many",
+                    "Give every tenth row");
     times_.push_back(time);
     discharges_.push_back(discharge);
   }
@@ -151,7 +120,7 @@ class AccelerogramReader {
   }
 
   Shaking read() {
-    table_.read([this](const Words& found) { name_columns(found); }, [this](const Words& found) { add_row(found); });
+    table_.read([this](const Words& found) { name_columns(found); }, [this] { add_row(); });
     if (times_.size() < 2)
       throw DataError({options_.file.string(), fmt::format("it has {} rows of numbers", times_.size()),
                        "An accelerogram has two at least"});
@@ -169,38 +138,38 @@ class AccelerogramReader {
         "Name the columns in the first line: time_s and some of east, north, up; or time_s and some of along, across, "
         "up, with azimuth_deg in [solve.shaking]";
     bool has[names] = {};
-    for (const std::string& word : found) {
+    for (const auto& [word, written, column] : found) {
       const auto at = std::find(words.begin(), words.end(), word);
-      if (at == words.end()) table_.refuse_line(fmt::format("\"{:.60}\"", word), "it is no name of a column", mend);
+      if (at == words.end())
+        table_.refuse(fmt::format("\"{:.60}\"", written), "it is no name of a column", mend, column);
       const auto name = static_cast<Name>(std::distance(words.begin(), at));
-      if (has[name]) table_.refuse_line(fmt::format("two columns \"{}\"", word), "only one can act", mend);
+      if (has[name]) table_.refuse(fmt::format("two columns \"{}\"", word), "only one can act", mend);
       has[name] = true;
       columns_.push_back(name);
     }
     const bool mapped = has[east] || has[north], turned = has[along] || has[across];
-    if (!has[time_s] || found.size() < 2) table_.refuse_line("no time_s with an acceleration", "both are needed", mend);
-    if (mapped && turned)
-      table_.refuse_line("columns along and across beside east and north", "they are the same", mend);
+    if (!has[time_s] || found.size() < 2) table_.refuse("no time_s with an acceleration", "both are needed", mend);
+    if (mapped && turned) table_.refuse("columns along and across beside east and north", "they are the same", mend);
     if (turned && !options_.azimuth)
-      table_.refuse_line("columns along or across", "it is not said where they point",
-                         "Give [solve.shaking] azimuth_deg, the direction of along from north over east");
+      table_.refuse("columns along or across", "it is not said where they point",
+                    "Give [solve.shaking] azimuth_deg, the direction of along from north over east");
     if (!turned && options_.azimuth)
-      table_.refuse_line("no column along or across", "azimuth_deg would have no effect",
-                         "Leave [solve.shaking] azimuth_deg out, or name the columns by it");
+      table_.refuse("no column along or across", "azimuth_deg would have no effect",
+                    "Leave [solve.shaking] azimuth_deg out, or name the columns by it");
   }
 
-  void add_row(const Words& found) {
+  void add_row() {
     double value[names] = {};
-    for (std::size_t n = 0; n < found.size(); ++n) value[columns_[n]] = table_.number(found[n]);
+    for (std::size_t n = 0; n < columns_.size(); ++n) value[columns_[n]] = table_.number(n);
     const double time = value[time_s];
     if (times_.empty()) first_ = time;
     const double at = options_.start + (time - first_);
     if (!times_.empty() && !(at > times_.back()))
-      table_.refuse_line(fmt::format("time_s = {:g}", time), "times must grow from row to row",
-                         "Sort the rows, and leave out those of the same time");
+      table_.refuse(fmt::format("time_s = {:g}", time), "times must grow from row to row",
+                    "Sort the rows, and leave out those of the same time");
     if (times_.size() == most_rows)
-      table_.refuse_line(fmt::format("more than {} rows", most_rows), "no accelerogram has so many",
-                         "Give every second row");
+      table_.refuse(fmt::format("more than {} rows", most_rows), "no accelerogram has so many",
+                    "Give every second row");
     times_.push_back(at);
     accelerations_.push_back(on_the_map(value));
   }

@@ -132,7 +132,8 @@ test_a_recipe_or_a_folder_in_another_encoding_is_refused() {
     expect_exit 2 "$bin/talus-preprocess" other.toml --check
     expect_words "the recipe is not UTF-8"
     expect_words "iconv -f $as -t UTF-8 other.toml > other-utf8.toml"
-    bash -c "$(grep -o 'iconv -f .*toml' "$TALUS_SCRATCH/stderr")" && cmp other-utf8.toml recipe.toml || fail "the command does not work"
+    bash -c "$(grep -o 'iconv -f .*toml' "$TALUS_SCRATCH/stderr")" || fail "the command does not work"
+    cmp other-utf8.toml recipe.toml || fail "the command makes another recipe"
   done
   folder=$(printf 'H\xf6lle')
   expect_exit 2 "$bin/talus-preprocess" recipe.toml --out "$folder"

@@ -59,7 +59,7 @@ test_file_that_is_no_accelerogram() {
   echo "0.0 1.0" >record.csv
   expect_exit 0 preprocess
   expect_exit 3 solve
-  expect_words 'record.csv: line 1: "0.0" (it is no name of a column)'
+  expect_words 'record.csv: line 1, column 1: "0.0" (it is no name of a column)'
 }
 
 run_test "$@"

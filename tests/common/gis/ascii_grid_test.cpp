@@ -15,6 +15,7 @@ namespace talus {
 namespace {
 
 using test::epsg;
+using test::holds;
 using test::identical;
 using test::Scratch;
 using test::small_raster;
@@ -127,10 +128,33 @@ TEST_F(AsciiGrid, has_its_crs_in_a_file_beside) {
 TEST_F(AsciiGrid, with_a_word_that_is_no_number_or_cut_short_is_a_fault) {
   const auto file = scratch.write("dem.asc", usual + "1 2 3\n4 fie 6\n");
   EXPECT_EQ(data_fault([&] { read_raster(file); }),
-            "./dem.asc: line 8: \"fie\" (a cell of an ASCII grid is a number). Mend the line; cells without value hold "
+            "./dem.asc: line 8, column 3: \"fie\" (a cell of an ASCII grid is a number). Mend the line; cells without "
+            "value hold "
             "the NODATA_value of the header, or *");
   const auto brief = scratch.write("brief.asc", "# comment\n" + usual + "1 2 3\n4\n");
   EXPECT_TRUE(test::begins(data_fault([&] { read_raster(brief); }), "./brief.asc: its cells cannot be read ("));
+}
+
+TEST_F(AsciiGrid, whose_thousands_a_sign_parts_is_refused_by_its_place) {
+  const auto fault = [&](const std::string& body) {
+    const auto file = scratch.write("dem.asc", usual + body);
+    return data_fault([&] { read_raster(file); });
+  };
+  for (const char* apostrophe : {"1 2 1'234.5\n4 5 6\n", "1 2 1\u2019234\n4 5 6\n"})
+    EXPECT_TRUE(holds(fault(apostrophe), {"./dem.asc: line 7, column 5: \"1", "thousands"})) << apostrophe;
+  for (const char* blank : {"1 2 1 234.5\n4 5 6\n", "1 2 1 234,5\n4 5 6\n"})
+    EXPECT_TRUE(holds(fault(blank), {"./dem.asc: line 7, column 7: \"234", "are 7", "thousands"})) << blank;
+  EXPECT_TRUE(holds(fault("1 2 3\n4 5 1,234.5\n"), {"./dem.asc: line 8, column 5: \"1,234.5\"", "are 7"}));
+  EXPECT_TRUE(holds(fault("1 2 1,234\n4 5 6\n"), {"line 7, column 5: \"1,234\"", "1.234, or 1234"}));
+  EXPECT_TRUE(holds(fault("1,5 2 3\n4.5 5 6\n"), {"line 8, column 1: \"4.5\"", "decimal commas and decimal points"}));
+  EXPECT_EQ(fault("1,234 2,5 3\n4 5 6\n"), "") << "the other number tells";
+  EXPECT_EQ(fault("1\n2 3 4 5\n6\n"), "") << "on any lines";
+}
+
+TEST_F(AsciiGrid, in_utf16_is_refused_with_the_command) {
+  const auto file = scratch.write("dem.asc", std::string("\xff\xfen\0c\0", 6));
+  EXPECT_TRUE(holds(data_fault([&] { read_raster(file); }),
+                    {"./dem.asc: its text is UTF-16", "iconv -f UTF-16 -t UTF-8 ./dem.asc > ./dem-utf8.asc"}));
 }
 
 TEST_F(AsciiGrid, windows_of_one_with_an_odd_header_equal_the_whole) {

@@ -305,6 +305,34 @@ TEST(draw, a_file_lists_members) {
   EXPECT_TRUE(holds(fault("solve.a\n\"1\n"), {"bad.csv:2:1: a quote is not closed"}));
 }
 
+TEST(draw, a_file_of_any_locale_is_read_or_refused_by_its_place) {
+  const test::Scratch scratch;
+  EnsembleOptions o;
+  o.members = 1;
+  o.design = Design::table;
+  const auto drawn = [&](const std::string& text) {
+    o.table = scratch.write("members.csv", text);
+    return draw_members(o);
+  };
+  for (const char* text :
+       {"solve.a,solve.law\n1.5,x\n-2.25,y\n", "solve.a;solve.law\n1,5;x\n-2,25;y\n",
+        "solve.a\tsolve.law\n1,5\tx\n-2,25\ty\n", "\xEF\xBB\xBFsolve.a;solve.law\r\n1,5;x\r\n-2,25;y\r\n"}) {
+    const MemberTable table = drawn(text);
+    ASSERT_EQ(table.columns.size(), 2u) << text;
+    EXPECT_EQ(table.columns[0].values, (std::vector<double>{1.5, -2.25})) << text;
+    EXPECT_EQ(table.columns[1].words, (std::vector<std::string>{"x", "y"})) << text;
+  }
+  EXPECT_EQ(drawn("solve.file\nH\xf6he.asc\nb.asc\n").columns[0].words[0], "H\u00f6he.asc");
+  const auto fault = [&](const std::string& text) { return test::fault_of<DataError>([&] { drawn(text); }); };
+  for (const char* number : {"\"1,234.5\"", "1'234.5", "1 234.5", "\"1,5\""})
+    EXPECT_TRUE(holds(fault(std::string("solve.a,solve.b\n1,") + number + "\n"), {"members.csv:2:3:", "is no number"}))
+        << number;
+  EXPECT_TRUE(holds(fault("solve.a;solve.b\n1;1.234,5\n"), {"members.csv:2:3:", "is no number"}));
+  EXPECT_TRUE(holds(fault("solve.a;solve.b\n1;1,234\n"), {"members.csv:2:3: \"1,234\"", "1.234, or 1234"}));
+  EXPECT_TRUE(holds(fault("solve.a;solve.b\n1,5;1.5\n"), {"members.csv:2:5: \"1.5\"", "commas and decimal points"}));
+  EXPECT_TRUE(holds(fault(std::string("s\0o\0l\0v\0e\0", 10)), {"its text is UTF-16LE", "iconv -f UTF-16LE"}));
+}
+
 TEST(draw, what_does_not_go_with_a_design_is_refused) {
   EnsembleOptions o = ensemble(20, Design::sensitivity, 2);
   o.correlation = {{{"solve.a", "solve.b"}, 0.5}};

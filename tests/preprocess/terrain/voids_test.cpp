@@ -120,6 +120,30 @@ TEST_F(point_table, takes_no_depths_for_elevations_and_names_the_line_that_is_no
             "first line");
 }
 
+TEST_F(point_table, with_thousands_that_a_sign_parts_is_refused_by_its_place) {
+  const auto fault = [&](const std::string& text) {
+    return data_fault([&] { read_points(scratch.write("p.csv", text)); });
+  };
+  const auto place = [&](const std::string& text, const std::string& at) {
+    return holds(fault(text), {"./p.csv: " + at, "thousands"});
+  };
+  EXPECT_TRUE(place("430;200;1'234.5\n", "line 1, column 9: \"1'234.5\""));
+  EXPECT_TRUE(place("430;200;1.234,5\n", "line 1, column 9: \"1.234,5\""));
+  EXPECT_TRUE(place("430;200;1 234,5\n", "line 1, column 9: \"1 234,5\""));
+  EXPECT_TRUE(place("430\t200\t1 234.5\n", "line 1, column 9: \"1 234.5\""));
+  EXPECT_TRUE(place("430;200;8\n430;200;1,234\n", "line 2, column 9: \"1,234\""));
+  EXPECT_TRUE(place("430;200;8,5\n430;200;1.234\n", "line 2, column 9: \"1.234\""));
+  EXPECT_TRUE(place("430,200,1,234.5\n", "line 1, column 1: "));
+  for (const char* plain :
+       {"430123,456;200;1,234\n", "x,y,z,class\n100,200,300,255\n", "430,200,1234.5\n", "1 2 300\n"})
+    EXPECT_EQ(fault(plain), "") << plain;
+  EXPECT_TRUE(holds(fault(std::string("4\0,\0"
+                                      "2\0,\0"
+                                      "8\0",
+                                      10)),
+                    {"its text is UTF-16LE", "iconv -f UTF-16LE"}));
+}
+
 TEST_F(point_table, reads_decimal_commas_and_drops_no_rest_of_a_line) {
   EXPECT_EQ(read_points(scratch.write("p.csv", "x;y;z\n430,5;200;8,9\n")).z, std::vector<double>{8.9});
   EXPECT_EQ(read_points(scratch.write("q.txt", "430,5\t200\t8,9\n")).x, std::vector<double>{430.5});

@@ -73,9 +73,10 @@ TEST(ReadShaking, what_is_no_accelerogram_is_refused_with_its_line) {
       "up, "
       "with azimuth_deg in [solve.shaking]";
   const auto refusal = [](const std::string& text) { return ShakingFile(text).refusal(); };
-  EXPECT_EQ(refusal("0 1\n1 2\n"), std::string("record.csv: line 1: \"0\" (it is no name of a column). ") + name_them);
+  EXPECT_EQ(refusal("0 1\n1 2\n"),
+            std::string("record.csv: line 1, column 1: \"0\" (it is no name of a column). ") + name_them);
   EXPECT_EQ(refusal("time_s east_g\n"),
-            std::string("record.csv: line 1: \"east_g\" (it is no name of a column). ") + name_them);
+            std::string("record.csv: line 1, column 8: \"east_g\" (it is no name of a column). ") + name_them);
   EXPECT_EQ(refusal("time_s\n0\n1\n"),
             std::string("record.csv: line 1: no time_s with an acceleration (both are needed). ") + name_them);
   EXPECT_EQ(refusal("time_s up up\n"),
@@ -86,15 +87,28 @@ TEST(ReadShaking, what_is_no_accelerogram_is_refused_with_its_line) {
   EXPECT_EQ(refusal("time_s east\n0 1\n0.1 1 2\n"),
             "record.csv: line 3: 3 words (the first line names 2 columns). Mend the line");
   EXPECT_EQ(refusal("time_s east\n0 1\n0.1 nan\n"),
-            "record.csv: line 3: \"nan\" (it is no finite number). Mend the line");
+            "record.csv: line 3, column 5: \"nan\" (it is no finite number). Mend the line");
   EXPECT_EQ(refusal("time_s east\n0 1\n0.1 1e999\n"),
-            "record.csv: line 3: \"1e999\" (it is no finite number). Mend the line");
+            "record.csv: line 3, column 5: \"1e999\" (it is no finite number). Mend the line");
   EXPECT_EQ(refusal("time_s east\n0 1\n0.1 1\n0.1 2\n"),
             "record.csv: line 4: time_s = 0.1 (times must grow from row to row). Sort the rows, and leave out those of "
             "the same time");
   EXPECT_EQ(refusal("time_s east\n0 1\n"), "record.csv (it has 1 rows of numbers). An accelerogram has two at least");
   EXPECT_EQ(refusal("time_s east\n0 1e308\n10 1e308\n"),
             "record.csv (the velocity of the ground is beyond all numbers). Check its unit and its scale");
+}
+
+TEST(ReadShaking, reads_a_table_of_any_locale_or_refuses_the_place) {
+  for (const char* text : {"time_s,east\n0,1.5\n1,-2.25\n", "time_s;east\n0;1,5\n1;-2,25\n",
+                           "time_s\teast\n0\t1,5\n1\t-2,25\n", "\xEF\xBB\xBFtime_s;east\r\n0;1,5\r\n1;-2,25\r\n"}) {
+    const Shaking shaking = ShakingFile(text).read();
+    ASSERT_EQ(shaking.samples.size(), 2u) << text;
+    EXPECT_EQ(shaking.samples[1].acceleration.x, -2.25) << text;
+  }
+  const auto refusal = [](const std::string& text) { return ShakingFile(text).refusal(); };
+  EXPECT_TRUE(test::holds(refusal("time_s;east\n0;1'234.5\n1;0\n"), {"line 2, column 3: \"1'234.5\"", "thousands"}));
+  EXPECT_TRUE(test::holds(refusal("time_s;east\n0;1 234,5\n1;0\n"), {"line 2, column 3: \"1 234,5\"", "thousands"}));
+  EXPECT_TRUE(test::holds(refusal("time_s;east\n0;1,234\n1;0\n"), {"line 2, column 3: \"1,234\"", "1.234, or 1234"}));
 }
 
 TEST(ReadShaking, an_azimuth_belongs_to_columns_along_it) {
