@@ -12,6 +12,7 @@
 
 #include "common/domain/bed_numbers.hpp"
 #include "common/domain/domain_layout.hpp"
+#include "common/map/limits.hpp"
 #include "common/stage/files.hpp"
 
 namespace talus {
@@ -109,7 +110,6 @@ std::vector<double> erodible_thickness(const Domain& domain) {
 }
 
 constexpr double most_map_cells = 2147483647.0;  // an index of a cell is an int
-constexpr double highest = 1e5;  // [m]; no ground of the Earth is a tenth of it away from the sea's level
 
 [[noreturn]] void refuse_domain(const fs::path& file, const std::string& why) {
   refuse_file(file, "not a whole domain", why, "Make it with talus-preprocess");
@@ -145,8 +145,8 @@ void check_points(const fs::path& file, const Domain& domain) {
   const double rim = map.cell, largest = 1e3 * map.cell;
   check_list(file, "P (east)", points.x, {map.west - rim, map.east() + rim, false});
   check_list(file, "P (north)", points.y, {map.south - rim, map.north() + rim, false});
-  check_list(file, "height", points.height, {-highest, highest, false});
-  check_list(file, "volume", points.volume, {tiny, largest * largest * 2 * highest, false});
+  check_list(file, "height", points.height, {-limits::height, limits::height, false});
+  check_list(file, "volume", points.volume, {tiny, largest * largest * 2 * limits::height, false});
   check_list(file, "extent_x", points.extent_x, {0, largest, false});
   check_list(file, "extent_y", points.extent_y, {0, largest, false});
   const auto releases = static_cast<int>(domain.release_names.size());
@@ -232,22 +232,20 @@ void scale_release(Domain& domain, double factor) {
 void check_domain_grid(const fs::path& file, const MapGrid& grid, double layer_height) {
   const double cells = static_cast<double>(grid.columns) * grid.rows;
   const bool sized = grid.columns > 0 && grid.rows > 0 && cells <= most_map_cells;
-  const bool placed = std::abs(grid.west) < 1e12 && std::abs(grid.south) < 1e12;
-  const bool spaced = grid.cell > 0 && grid.cell < 1e9 && layer_height > 0 && layer_height < 1e9;
-  if (sized && placed && spaced) return;
+  if (sized && limits::hold(grid) && layer_height > 0 && layer_height < limits::cell) return;
   refuse_domain(file, fmt::format("its grid has {} x {} cells of {:g} m, layers of {:g} m, its corner at {:g} {:g}",
                                   grid.columns, grid.rows, grid.cell, layer_height, grid.west, grid.south));
 }
 
 void check_domain(const fs::path& file, const Domain& domain) {
-  const Limits elevation{-highest, highest, true};
+  const Limits elevation{-limits::height, limits::height, true};
   check_sheet(file, "terrain", domain.terrain, elevation);
   check_sheet(file, "before", domain.before, elevation);
-  check_sheet(file, "release_thickness", domain.release_thickness, {0, highest, true});
+  check_sheet(file, "release_thickness", domain.release_thickness, {0, limits::height, true});
   for (const auto& [name, raster] : domain.bed) {
     if (std::find(bed_numbers.begin(), bed_numbers.end(), name) == bed_numbers.end())
       refuse_domain(file, fmt::format("the grid \"bed.{}\" is no number of [solve.base]", name));
-    check_sheet(file, "bed." + name, raster, {-1e30, 1e30, true});
+    check_sheet(file, "bed." + name, raster, {-limits::number, limits::number, true});
   }
   if (domain.erodible < 0 || static_cast<std::size_t>(domain.erodible) > domain.release_names.size())
     refuse_domain(file, fmt::format("{} of its {} releases are ground", domain.erodible, domain.release_names.size()));

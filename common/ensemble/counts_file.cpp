@@ -184,7 +184,7 @@ void check_members(const h5::File& file, const EnsembleCounts& counts) {
 
 void read_members(const h5::File& file, EnsembleCounts& counts) {
   const auto count = static_cast<hsize_t>(counts.part.count());
-  constexpr h5::Allowed a_state{.low = 0, .high = 3, .why = "there is no such state"};
+  constexpr h5::Allowed a_state{.low = 0, .high = 3};
   for (const std::uint8_t state : file.read<std::uint8_t>("/members/state", {count}, a_state))
     counts.states.push_back(static_cast<MemberState>(state));
   counts.results.resize(count);
@@ -224,14 +224,14 @@ EnsembleScene read_scene(const h5::File& file) {
   EnsembleScene scene;
   scene.scene = file.text("/scene", "name");
   scene.title = file.text("/scene", "title");
-  scene.threshold = h5::checked_number(file, "/scene", "threshold_m", h5::not_negative);
+  scene.threshold = h5::checked_number(file, "/scene", "threshold_m", h5::thickness);
   scene.tallied = file.integer("/scene", "distribution") != 0 ? Tallied::distribution : Tallied::largest;
   scene.grid = h5::read_grid(file, "/scene");
   if (!file.exists("/scene/terrain")) return scene;
   const h5::Dims cells{scene.grid.count()};
-  scene.terrain = file.read<double>("/scene/terrain", cells, h5::finite_or_none);
-  scene.before = file.read<double>("/scene/before", cells, h5::finite_or_none);
-  scene.release_thickness = file.read<double>("/scene/release_thickness", cells, h5::not_negative_or_none);
+  scene.terrain = file.read<double>("/scene/terrain", cells, h5::elevation_or_none);
+  scene.before = file.read<double>("/scene/before", cells, h5::elevation_or_none);
+  scene.release_thickness = file.read<double>("/scene/release_thickness", cells, h5::thickness_or_none);
   return scene;
 }
 

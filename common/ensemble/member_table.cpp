@@ -134,7 +134,7 @@ SlideTable read_slides(const h5::File& file, std::int64_t count) {
           fmt::format("the lattice has {} x {}", slides.lattice.columns, slides.lattice.rows));
   slides.ground.grid = h5::read_grid(file, "/slides/ground");
   slides.ground.values =
-      file.read<double>("/slides/ground/elevation", {slides.ground.grid.count()}, h5::finite_or_none);
+      file.read<double>("/slides/ground/elevation", {slides.ground.grid.count()}, h5::elevation_or_none);
   return slides;
 }
 

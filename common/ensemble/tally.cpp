@@ -75,7 +75,7 @@ std::int32_t further(const CountedMap& map, std::int32_t a, std::int32_t b) {
 
 std::vector<std::uint32_t> read_counted(const h5::File& file, const std::string& path, std::size_t cells,
                                         std::int64_t most) {
-  const h5::Allowed allowed{.low = 0, .high = static_cast<double>(most), .why = "there are not so many members"};
+  const h5::Allowed allowed{.low = 0, .high = static_cast<double>(most)};
   const auto values = file.read<std::int32_t>(path, {cells}, allowed);
   return {values.begin(), values.end()};
 }
@@ -110,8 +110,7 @@ void read_histograms(const h5::File& file, const std::string& group, const Count
   const auto written = file.read<std::int64_t>(group + "/bin_edges", {edges.size()});
   if (!std::equal(edges.begin(), edges.end(), written.begin()))
     file.refuse(fmt::format("dataset {}/bin_edges", group), "its bins are not those of this program");
-  const h5::Allowed a_cell{
-      .low = 0, .high = static_cast<double>(tally.reached.size()) - 1, .why = "there is no such cell"};
+  const h5::Allowed a_cell{.low = 0, .high = static_cast<double>(tally.reached.size()) - 1};
   const auto cells = file.read_list<std::int32_t>(group + "/histogram_cells", a_cell);
   const auto bins = file.read<std::int32_t>(group + "/histograms", {cells.size(), histogram_bins}, h5::not_negative);
   for (std::size_t row = 0; row < cells.size(); ++row)
@@ -275,11 +274,11 @@ MapTally read_tally(const h5::File& file, const CountedMap& map, const TallyShap
   const auto group = std::string("/maps/") + map.name;
   const std::size_t cells = shape.cells;
   MapTally tally(file.read_list<double>(group + "/thresholds"), cells, shape.tallied);
-  h5::check_growing(file, group + "/thresholds", tally.thresholds, true);
+  h5::check_growing(file, group + "/thresholds", tally.thresholds, h5::finite);
   for (std::size_t n = 0; n < tally.thresholds.size(); ++n)
     tally.exceeded[n] = read_counted(file, fmt::format("{}/exceeded/{:03}", group, n), cells, shape.members);
   tally.reached = read_counted(file, group + "/reached", cells, shape.members);
-  tally.extreme = file.read<std::int32_t>(group + "/extreme", {cells}, {.low = -1, .why = "-1 stands for none"});
+  tally.extreme = file.read<std::int32_t>(group + "/extreme", {cells}, {.low = -1});
   if (tally.tallied == Tallied::distribution) {
     tally.sum = file.read<std::int64_t>(group + "/sum", {cells}, h5::not_negative);
     tally.sum_of_squares = file.read<std::int64_t>(group + "/sum_of_squares", {cells}, h5::not_negative);
@@ -303,8 +302,7 @@ KeptCells read_cells(const h5::File& file, const MapGrid& grid) {
   if (static_cast<double>(grid.columns) * grid.rows > most)
     file.refuse(fmt::format("has a map of {} x {} cells", grid.columns, grid.rows), "no model is so large");
   KeptCells cells(grid);
-  const h5::Allowed a_block{
-      .low = 0, .high = static_cast<double>(cells.all_blocks()) - 1, .why = "there is no such block"};
+  const h5::Allowed a_block{.low = 0, .high = static_cast<double>(cells.all_blocks()) - 1};
   const auto blocks = file.read_list<std::int32_t>("/cells/blocks", a_block);
   for (std::size_t n = 0; n < blocks.size(); ++n) {
     if (n > 0 && blocks[n] <= blocks[n - 1])

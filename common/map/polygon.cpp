@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/map/limits.hpp"
+
 namespace talus {
 
 double signed_distance(const MapPolygon& polygon, double x, double y) {
@@ -175,6 +177,14 @@ std::string places_json(const std::vector<MapPlace>& places) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+namespace {
+
+bool on_a_map(const std::array<double, 2>& place) {
+  return std::abs(place[0]) < limits::coordinate && std::abs(place[1]) < limits::coordinate;
+}
+
+}  // namespace
+
 std::optional<std::vector<MapPlace>> places_in(const std::string& text) {
   std::vector<MapPlace> places;
   try {
@@ -184,7 +194,7 @@ std::optional<std::vector<MapPlace>> places_in(const std::string& text) {
       places.push_back({one.at("words").get<std::string>(), {}});
       one.at("rings").get_to(places.back().rings);
       for (const auto& ring : places.back().rings)
-        if (ring.empty()) return std::nullopt;
+        if (ring.empty() || !std::ranges::all_of(ring, on_a_map)) return std::nullopt;
     }
   } catch (const Json::exception&) {
     return std::nullopt;

@@ -19,6 +19,8 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include "common/map/limits.hpp"
+
 namespace talus::h5 {
 
 using Dims = std::vector<hsize_t>;
@@ -39,22 +41,36 @@ struct Naming {
   std::string mend;
 };
 
-/// The numbers that may stand in a dataset.
+/// The numbers that may stand in a dataset or an attribute.
 struct Allowed {
-  double low = -std::numeric_limits<double>::max(), high = std::numeric_limits<double>::max();
+  double low = -limits::number, high = limits::number;
   bool none = false;  ///< NaN says that there is no value
-  const char* why = "numbers must be finite";
+
+  bool holds(double value) const { return (value >= low && value <= high) || (none && std::isnan(value)); }
+  /// In words, for a refusal.
+  std::string words() const {
+    return fmt::format("{:g} to {:g} is possible{}", low, high, none ? ", or NaN for none" : "");
+  }
 };
 
-/// Any finite number.
+/// Any number that a quantity can have.
 inline constexpr Allowed finite{};
-/// Any finite number, or none.
-inline constexpr Allowed finite_or_none{.none = true, .why = "numbers must be finite, or NaN where there is none"};
+/// The same, or none.
+inline constexpr Allowed finite_or_none{.none = true};
 /// 0 or more.
-inline constexpr Allowed not_negative{.low = 0, .why = "it cannot be negative, nor NaN, nor without end"};
+inline constexpr Allowed not_negative{.low = 0};
 /// 0 or more, or none.
-inline constexpr Allowed not_negative_or_none{
-    .low = 0, .none = true, .why = "it cannot be negative, nor without end; NaN stands for none"};
+inline constexpr Allowed not_negative_or_none{.low = 0, .none = true};
+/// Elevations, or none where there is no ground.
+inline constexpr Allowed elevation_or_none{.low = -limits::height, .high = limits::height, .none = true};
+/// Vertical thickness [m].
+inline constexpr Allowed thickness{.low = 0, .high = limits::height};
+/// The same, or none.
+inline constexpr Allowed thickness_or_none{.low = 0, .high = limits::height, .none = true};
+/// Volumes [m3].
+inline constexpr Allowed a_volume{.low = 0, .high = limits::volume};
+/// Times from the start of a run [s].
+inline constexpr Allowed a_time{.low = 0, .high = limits::time};
 
 class File;
 /// Refuses the file where a value of dataset `path` is not allowed.
@@ -193,8 +209,8 @@ template <class T>
 void check_values(const File& file, const std::string& path, std::span<const T> values, const Allowed& allowed) {
   for (std::size_t n = 0; n < values.size(); ++n) {
     const auto value = static_cast<double>(values[n]);
-    if ((value >= allowed.low && value <= allowed.high) || (allowed.none && std::isnan(value))) continue;
-    file.refuse(fmt::format("dataset {} holds {:g} at place {}", path, value, n), allowed.why);
+    if (!allowed.holds(value))
+      file.refuse(fmt::format("dataset {} holds {:g} at place {}", path, value, n), allowed.words());
   }
 }
 
@@ -202,18 +218,18 @@ void check_values(const File& file, const std::string& path, std::span<const T> 
 inline double checked_number(const File& file, const std::string& object, const std::string& name,
                              const Allowed& allowed) {
   const double value = file.number(object, name);
-  if (!((value >= allowed.low && value <= allowed.high) || (allowed.none && std::isnan(value))))
-    file.refuse(fmt::format("attribute {} {} is {:g}", object, name, value), allowed.why);
+  if (!allowed.holds(value)) file.refuse(fmt::format("attribute {} {} is {:g}", object, name, value), allowed.words());
   return value;
 }
 
-/// Refuses the file where a list does not grow from value to value, or holds a number that is not finite.
-inline void check_growing(const File& file, const std::string& path, std::span<const double> values, bool strictly) {
-  check_values(file, path, values, finite);
-  for (std::size_t n = 1; n < values.size(); ++n) {
-    if (strictly ? values[n] > values[n - 1] : values[n] >= values[n - 1]) continue;
-    file.refuse(fmt::format("dataset {} holds {:g} behind {:g}", path, values[n], values[n - 1]), "times must grow");
-  }
+/// Refuses the file where a list does not grow from value to value, or holds one that is not allowed.
+inline void check_growing(const File& file, const std::string& path, std::span<const double> values,
+                          const Allowed& allowed) {
+  check_values(file, path, values, allowed);
+  for (std::size_t n = 1; n < values.size(); ++n)
+    if (!(values[n] > values[n - 1]))
+      file.refuse(fmt::format("dataset {} holds {:g} behind {:g}", path, values[n], values[n - 1]),
+                  "its values must grow");
 }
 
 /// Closes an HDF5 identifier of any kind.

@@ -20,6 +20,9 @@ const std::string root = "/VTKHDF";
 const std::string steps_group = root + "/Steps";
 constexpr const char* fields[] = {"velocity", "volume", "pressure", "id", "release"};
 
+constexpr h5::Allowed a_velocity{.low = -limits::speed, .high = limits::speed};
+constexpr h5::Allowed a_place{.low = -limits::coordinate, .high = limits::coordinate};
+
 void check_lengths(const PointFrame& frame) {
   const auto n = frame.position.size();
   if (frame.velocity.size() != n || frame.volume.size() != n || frame.pressure.size() != n || frame.id.size() != n ||
@@ -101,9 +104,10 @@ PointFrames::PointFrames(const std::filesystem::path& run_file)
     : file_(std::make_unique<h5::File>(h5::File::open(run_file, {run_file, "Run talus-solve again"}))) {
   if (!file_->exists(root + "/Steps/Values") || !file_->exists(root + "/PointData/velocity")) return;
   time_ = file_->read_list<double>(root + "/Steps/Values");
-  h5::check_growing(*file_, root + "/Steps/Values", time_, true);
-  count_ = file_->read<std::int64_t>(root + "/NumberOfPoints", {time_.size()}, h5::not_negative);
-  first_ = file_->read<std::int64_t>(root + "/Steps/PointOffsets", {time_.size()}, h5::not_negative);
+  h5::check_growing(*file_, root + "/Steps/Values", time_, h5::a_time);
+  const auto all = static_cast<double>(file_->dims(root + "/PointData/velocity").at(0));
+  count_ = file_->read<std::int64_t>(root + "/NumberOfPoints", {time_.size()}, {.low = 0, .high = all});
+  first_ = file_->read<std::int64_t>(root + "/Steps/PointOffsets", {time_.size()}, {.low = 0, .high = all});
 }
 
 PointFrames::~PointFrames() = default;
@@ -122,8 +126,8 @@ std::array<double, 2> PointFrames::moving(std::size_t frame, double faster_than)
   double volume = 0, flux = 0;
   for (hsize_t done = 0; done < count; done += rows_at_once) {
     const hsize_t rows = std::min(rows_at_once, count - done);
-    const auto velocity = file_->read_rows<float>(root + "/PointData/velocity", first + done, rows, {3}, h5::finite);
-    const auto volumes = file_->read_rows<float>(root + "/PointData/volume", first + done, rows, {}, h5::not_negative);
+    const auto velocity = file_->read_rows<float>(root + "/PointData/velocity", first + done, rows, {3}, a_velocity);
+    const auto volumes = file_->read_rows<float>(root + "/PointData/volume", first + done, rows, {}, h5::a_volume);
     for (std::size_t p = 0; p < volumes.size(); ++p) {
       const double speed = std::hypot(velocity[3 * p], velocity[3 * p + 1], velocity[3 * p + 2]);
       if (!(speed > faster_than)) continue;
@@ -138,10 +142,10 @@ PointFrame PointFrames::read(std::size_t frame) const {
   const auto first = static_cast<hsize_t>(first_.at(frame)), count = static_cast<hsize_t>(count_.at(frame));
   PointFrame points;
   points.time = time_.at(frame);
-  points.position = rows_of<double, 3>(file_->read_rows<double>(root + "/Points", first, count, {3}, h5::finite));
+  points.position = rows_of<double, 3>(file_->read_rows<double>(root + "/Points", first, count, {3}, a_place));
   points.velocity =
-      rows_of<float, 3>(file_->read_rows<float>(root + "/PointData/velocity", first, count, {3}, h5::finite));
-  points.volume = file_->read_rows<float>(root + "/PointData/volume", first, count, {}, h5::not_negative);
+      rows_of<float, 3>(file_->read_rows<float>(root + "/PointData/velocity", first, count, {3}, a_velocity));
+  points.volume = file_->read_rows<float>(root + "/PointData/volume", first, count, {}, h5::a_volume);
   points.pressure = file_->read_rows<float>(root + "/PointData/pressure", first, count, {}, h5::finite);
   points.id = file_->read_rows<std::int32_t>(root + "/PointData/id", first, count, {}, h5::not_negative);
   points.release = file_->read_rows<std::int32_t>(root + "/PointData/release", first, count, {}, h5::not_negative);

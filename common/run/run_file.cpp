@@ -5,9 +5,11 @@
 #include "common/run/run_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,7 @@ template <class T>
 struct SummaryItem {
   const char* name;
   T RunSummary::*value;
+  h5::Allowed allowed = h5::not_negative;
 };
 
 constexpr SummaryItem<std::string> summary_texts[] = {
@@ -40,16 +43,17 @@ constexpr const char* sanity_words = "sanity";
 constexpr SummaryItem<std::int64_t> summary_integers[] = {{"particles", &RunSummary::particles},
                                                           {"particles_outflow", &RunSummary::particles_outflow},
                                                           {"steps", &RunSummary::steps}};
+constexpr h5::Allowed a_density{.low = 1e-6, .high = limits::density};  // [kg/m3]
 constexpr SummaryItem<double> summary_numbers[] = {
-    {"time_end_s", &RunSummary::time_end},
-    {"layer_height_m", &RunSummary::layer_height},
-    {"wall_time_s", &RunSummary::wall_time},
+    {"time_end_s", &RunSummary::time_end, h5::a_time},
+    {"layer_height_m", &RunSummary::layer_height, {.low = 0, .high = limits::cell}},
+    {"wall_time_s", &RunSummary::wall_time, h5::a_time},
     {"memory_bytes", &RunSummary::memory},
-    {"density_kg_m3", &RunSummary::density},
-    {"volume_released_m3", &RunSummary::volume_released},
-    {"volume_entrained_m3", &RunSummary::volume_entrained},
-    {"volume_final_m3", &RunSummary::volume_final},
-    {"volume_outflow_m3", &RunSummary::volume_outflow},
+    {"density_kg_m3", &RunSummary::density, a_density},
+    {"volume_released_m3", &RunSummary::volume_released, h5::a_volume},
+    {"volume_entrained_m3", &RunSummary::volume_entrained, h5::a_volume},
+    {"volume_final_m3", &RunSummary::volume_final, h5::a_volume},
+    {"volume_outflow_m3", &RunSummary::volume_outflow, h5::a_volume},
 };
 
 /// The list for RunSummary::release_density; only there where a run has releases.
@@ -95,23 +99,41 @@ void write_summary(h5::File& file, const RunSummary& summary) {
   h5::write_findings(file, summary.findings);
 }
 
-/// One map, whose values are finite or none; of a quantity, such as a thickness, never negative.
-std::vector<double> read_map(const h5::File& file, const std::string& path, const MapGrid& grid, bool elevation) {
-  return file.read<double>(path, h5::shape_of(grid), elevation ? h5::finite_or_none : h5::not_negative_or_none);
+/// What a number of a unit can be, of those of maps, histories and sanity; of a quantity, such as a thickness, never
+/// negative.
+h5::Allowed range_of(const std::string& unit, bool quantity) {
+  h5::Allowed allowed{.none = unit != "J" && unit != "m3"};  // these two are of all that is there
+  if (unit == "m") allowed.high = limits::height;
+  if (unit == "s") allowed.high = limits::time;
+  if (unit == "m s-1" || unit == "m/s") allowed.high = limits::speed;
+  if (unit == "m3") allowed.high = limits::volume;
+  if (unit == "kPa") allowed.high = limits::pressure / 1000;
+  allowed.low = quantity ? 0 : -allowed.high;
+  return allowed;
+}
+
+/// A map; the surfaces of a run tell which cells are in it, so that one of them without any is none.
+std::vector<double> read_map(const h5::File& file, const MapField& field, const MapGrid& grid) {
+  const auto path = std::string("/maps/") + field.name;
+  const bool elevation = field.values == &RunMaps::terrain || field.values == &RunMaps::before;
+  auto values = file.read<double>(path, h5::shape_of(grid), range_of(field.unit, !elevation));
+  if (elevation && std::ranges::all_of(values, [](double z) { return std::isnan(z); }))
+    file.refuse(fmt::format("dataset {} holds no number", path), "a run has ground under it");
+  return values;
 }
 
 RunMaps read_maps(const h5::File& file) {
   RunMaps maps;
   maps.grid = h5::read_grid(file, "/maps");
-  maps.threshold = h5::checked_number(file, "/maps", "threshold_m", h5::not_negative);
+  maps.threshold = h5::checked_number(file, "/maps", "threshold_m", h5::thickness);
   for (const MapField& field : map_fields) {
-    const auto path = std::string("/maps/") + field.name;
-    const bool elevation = field.values == &RunMaps::terrain || field.values == &RunMaps::before;
-    if (!field.optional || file.exists(path)) maps.*(field.values) = read_map(file, path, maps.grid, elevation);
+    if (!field.optional || file.exists(std::string("/maps/") + field.name))
+      maps.*(field.values) = read_map(file, field, maps.grid);
   }
   for (std::size_t r = 0; file.exists("/maps/deposit_of/" + std::to_string(r)); ++r) {
     const auto path = "/maps/deposit_of/" + std::to_string(r);
-    maps.deposit_of.emplace_back(file.text(path, "release"), read_map(file, path, maps.grid, false));
+    maps.deposit_of.emplace_back(file.text(path, "release"),
+                                 file.read<double>(path, h5::shape_of(maps.grid), h5::thickness_or_none));
   }
   return maps;
 }
@@ -120,10 +142,10 @@ RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
   RunFrames frames;
   if (!file.exists("/frames/time")) return frames;
   frames.time = file.read_list<double>("/frames/time");
-  h5::check_growing(file, "/frames/time", frames.time, true);
+  h5::check_growing(file, "/frames/time", frames.time, h5::a_time);
   auto shape = h5::shape_of(grid);
   shape.insert(shape.begin(), frames.time.size());
-  const auto all = file.read<double>("/frames/thickness", shape, h5::not_negative_or_none);
+  const auto all = file.read<double>("/frames/thickness", shape, h5::thickness_or_none);
   for (std::size_t i = 0; i < frames.time.size(); ++i) {
     const auto start = all.begin() + static_cast<std::ptrdiff_t>(i * grid.count());
     frames.thickness.emplace_back(start, start + static_cast<std::ptrdiff_t>(grid.count()));
@@ -140,12 +162,15 @@ RunSummary read_summary(const h5::File& file) {
       file.refuse(fmt::format("attribute / {} is {}", item.name, summary.*(item.value)), "a count is not negative");
   }
   for (const auto& item : summary_numbers)
-    summary.*(item.value) = h5::checked_number(file, "/", item.name, h5::not_negative);
-  for (const SanityNumber& number : sanity_numbers) summary.sanity.*(number.value) = file.number("/", number.name);
+    summary.*(item.value) = h5::checked_number(file, "/", item.name, item.allowed);
+  for (const SanityNumber& number : sanity_numbers) {
+    const bool difference = number.value == &RunSanity::volume_error;
+    summary.sanity.*(number.value) = h5::checked_number(file, "/", number.name, range_of(number.unit, !difference));
+  }
   summary.sanity.words = file.text("/", sanity_words);
-  if (file.exists(release_density)) summary.release_density = file.read_list<double>(release_density, h5::not_negative);
+  if (file.exists(release_density)) summary.release_density = file.read_list<double>(release_density, a_density);
   for (const auto& phase : file.children("/profile"))
-    summary.profile.emplace_back(phase, file.read<double>("/profile/" + phase, {1}, h5::not_negative).front());
+    summary.profile.emplace_back(phase, file.read<double>("/profile/" + phase, {1}, h5::a_time).front());
   summary.provenance = h5::read_facts(file, "/provenance");
   summary.findings = h5::read_findings(file);
   auto places = places_in(h5::read_text(file, "/places"));
@@ -234,6 +259,20 @@ void write_history(h5::File& file, const RunHistory& history) {
   }
 }
 
+namespace {
+
+/// Whether a column of the history, of the run or of a place, is never negative.
+bool counts(std::string_view name) {
+  constexpr std::string_view all[] = {"step",        "step_size_s",   "kinetic_J",    "volume_m3",
+                                      "outflow_m3",  "speed_max_m_s", "iterations",   "speed_max_so_far_m_s",
+                                      "inflow_m3",   "step_cuts",     "speed_m_s",    "packing_p99",
+                                      "packing_max", "step_over_cfl", "thickness_m",  "thickness_max_m",
+                                      "area_m2",     "_points",       "points_apart", "largest_stretch"};
+  return std::ranges::any_of(all, [&](std::string_view one) { return name.ends_with(one); });
+}
+
+}  // namespace
+
 RunHistory read_history(const h5::File& file) {
   RunHistory history;
   for (const auto& name : file.children("/history")) {
@@ -244,9 +283,9 @@ RunHistory read_history(const h5::File& file) {
     };
     std::vector<double> values = file.read<double>(path, dims);
     if (name == "time_s")
-      h5::check_growing(file, path, values, false);
+      h5::check_growing(file, path, values, h5::a_time);
     else
-      h5::check_values<double>(file, path, values, h5::finite_or_none);
+      h5::check_values<double>(file, path, values, range_of(word("unit"), counts(name)));
     history.columns.push_back({.name = name,
                                .unit = word("unit"),
                                .quantity = word("quantity"),

@@ -28,13 +28,17 @@ MapGrid read_grid(const File& file, const std::string& group) {
   constexpr auto limit = std::numeric_limits<int>::max();
   if (columns < 1 || rows < 1 || columns > limit || rows > limit)
     file.refuse("holds an impossible map grid", fmt::format("of {} columns and {} rows", columns, rows));
-  constexpr Allowed a_cell{.low = std::numeric_limits<double>::min(), .why = "a cell has a size"};
-  return {.columns = static_cast<int>(columns),
-          .rows = static_cast<int>(rows),
-          .west = checked_number(file, group, "west_m", finite),
-          .south = checked_number(file, group, "south_m", finite),
-          .cell = checked_number(file, group, "cell_m", a_cell),
-          .crs_wkt = file.text(group, "crs_wkt")};
+  const MapGrid grid{.columns = static_cast<int>(columns),
+                     .rows = static_cast<int>(rows),
+                     .west = file.number(group, "west_m"),
+                     .south = file.number(group, "south_m"),
+                     .cell = file.number(group, "cell_m"),
+                     .crs_wkt = file.text(group, "crs_wkt")};
+  if (!limits::hold(grid))
+    file.refuse(fmt::format("attributes {} cell_m, west_m and south_m are {:g}, {:g} and {:g}", group, grid.cell,
+                            grid.west, grid.south),
+                "no map has such cells there");
+  return grid;
 }
 
 void write_facts(File& file, const std::string& group, const std::vector<std::pair<std::string, std::string>>& facts) {

@@ -36,7 +36,7 @@ std::vector<T> read_all(const h5::File& in, const std::string& path, const h5::D
 /// The points of a frame, all lists as long as the first.
 PointFrame points_in(const h5::File& in) {
   PointFrame f;
-  f.time = h5::checked_number(in, "/", "time", h5::not_negative);
+  f.time = h5::checked_number(in, "/", "time", h5::a_time);
   const auto count = static_cast<hsize_t>(in.length("/id"));
   f.position = rows_of(read_all<double>(in, "/position", {count, 3}));
   f.velocity = rows_of(read_all<float>(in, "/velocity", {count, 3}));
@@ -103,7 +103,7 @@ void FrameStore::append_to(RunWriter& run, std::int64_t number, const MapGrid& g
   const PointFrame f = points_in(frame);
   if (!f.id.empty()) run.append(f);
   run.append_thickness(f.time, grid,
-                       read_all<double>(frame, "/thickness", h5::shape_of(grid), h5::not_negative_or_none));
+                       read_all<double>(frame, "/thickness", h5::shape_of(grid), h5::thickness_or_none));
 }
 
 PointFrame point_frame(const Scene& scene, const SolveOptions& options, double time, const ParticleState& s) {

@@ -100,13 +100,17 @@ TEST_F(Hdf5Reading, names_place_and_value_of_what_cannot_be) {
     return [=](const h5::File& file) { h5::check_values<double>(file, "/x", values, allowed); };
   };
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(fault(checked(h5::finite, {0, -1e300})), "");
+  EXPECT_EQ(fault(checked(h5::finite, {0, -1e29})), "");
+  EXPECT_EQ(fault(checked(h5::finite, {0, -1e30})),
+            ": dataset /x holds -1e+30 at place 1 (-5e+29 to 5e+29 is possible). Mend it");
   EXPECT_EQ(fault(checked(h5::finite, {0, nan})),
-            ": dataset /x holds nan at place 1 (numbers must be finite). Mend it");
+            ": dataset /x holds nan at place 1 (-5e+29 to 5e+29 is possible). Mend it");
   EXPECT_NE(fault(checked(h5::finite_or_none, {inf})), "");
   EXPECT_EQ(fault(checked(h5::finite_or_none, {nan})), "");
   EXPECT_NE(fault(checked(h5::not_negative, {-1e-300})), "");
-  EXPECT_EQ(fault(checked(h5::not_negative_or_none, {nan, 0, 1e300})), "");
+  EXPECT_EQ(fault(checked(h5::not_negative_or_none, {nan, 0, 1e29})), "");
+  EXPECT_EQ(fault(checked(h5::thickness_or_none, {nan, 0, 2e5})),
+            ": dataset /x holds 200000 at place 2 (0 to 100000 is possible, or NaN for none). Mend it");
 }
 
 constexpr h5::Format known_format{"talus-test", "a test"};

@@ -59,13 +59,20 @@ RunSummary some_summary() {
   summary.particles = 1'234'567'890'123;
   summary.volume_released = 1.0 / 3.0;
   summary.layer_height = 2.5;
+  summary.density = 2000;
   summary.release_density = {2000, 1800};
+  summary.profile = {{"scatter", 0.5}};
   summary.provenance = {{"input", "before.tif sha256 12"}, {"input", "after.tif sha256 34"}, {"note", ""}};
   return summary;
 }
 
-const RunHistory some_history{
-    {{"time_s", "s", "", "", {0, 1}}, {"kinetic_J", "J", "", "", {5, 6}}, {"a", "m", "thickness", "gauge a", {7, 8}}}};
+const RunHistory some_history{{{"time_s", "s", "", "", {0, 1}},
+                               {"kinetic_J", "J", "", "", {5, 6}},
+                               {"gauge_a_thickness_m", "m", "thickness", "gauge a", {7, 8}},
+                               {"volume_m3", "m3", "", "", {7, 8}},
+                               {"speed_max_m_s", "m s-1", "", "", {7, 8}},
+                               {"momentum_x_kg_m_s", "kg m s-1", "", "", {-7, 8}},
+                               {"newton_iterations", "1", "", "", {7, 8}}}};
 
 void write_some_run(const fs::path& file) {
   RunWriter writer(file);
@@ -141,7 +148,9 @@ TEST_F(RunFile, is_not_there_until_it_is_finished_and_may_have_no_frames_or_poin
     EXPECT_FALSE(fs::exists(file_));
   }
   EXPECT_EQ(scratch.files(), 0U) << "an abandoned run leaves nothing behind";
-  RunWriter(file_).finish(some_maps(), {}, {});
+  RunSummary summary;
+  summary.density = 2000;
+  RunWriter(file_).finish(some_maps(), {}, summary);
   const auto run = read_run(file_);
   EXPECT_TRUE(run.frames.time.empty());
   EXPECT_EQ(PointFrames(file_).most_points(), 0U);
@@ -227,7 +236,8 @@ TEST_F(RunFile, refuses_numbers_that_cannot_be_with_their_place) {
             ": attribute / particles is -1");
   EXPECT_EQ(fault_with([](auto&, auto&, RunSummary& summary) { summary.density = std::nan(""); }),
             ": attribute / density_kg_m3 is nan");
-  EXPECT_EQ(fault_with([](RunMaps& maps, auto&, auto&) { maps.grid.cell = 0; }), ": attribute /maps cell_m is 0");
+  EXPECT_EQ(fault_with([](RunMaps& maps, auto&, auto&) { maps.grid.cell = 0; }),
+            ": attributes /maps cell_m, west_m and south_m are 0, 500000 and 5e+06");
 }
 
 TEST_F(RunFile, reports_a_write_that_the_system_refuses) {

@@ -276,7 +276,9 @@ TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
     const std::vector<double> zero(scene.map.count(), 0.0);
     maps.terrain = maps.before = maps.initial_thickness = maps.deposit_thickness = maps.peak_thickness = zero;
     maps.peak_speed = maps.peak_pressure_kPa = maps.arrival_time = zero;
-    writer.finish(maps, {}, {});
+    RunSummary summary;
+    summary.density = 2000;
+    writer.finish(maps, {}, summary);
   }
   const talus::Run run = read_run(scratch / "run.h5");
   EXPECT_EQ(run.frames.time, (std::vector<double>{0, 0.1}));
