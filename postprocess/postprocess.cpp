@@ -13,6 +13,7 @@
 #include "common/ensemble/options.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/local_only.hpp"
+#include "common/recipe/dataset_name.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/files.hpp"
@@ -106,6 +107,7 @@ std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
   if (job.thalweg.given) inputs.push_back(vector_source(job.options.thalweg).file);
+  std::ranges::transform(inputs, inputs.begin(), file_behind);
   for (const fs::path& polygons : with_sidecars({job.options.buildings.polygons})) inputs.push_back(polygons);
   return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
                      {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});

@@ -11,6 +11,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/gis/raster_file.hpp"
+#include "common/recipe/dataset_name.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/stage/files.hpp"
 #include "common/stage/identity.hpp"
@@ -25,7 +26,10 @@ constexpr double sure_errors = 3;
 /// A release of fewer cells tells nothing of its shape.
 constexpr double fewest_released_cells = 9;
 
-fs::path whole(const fs::path& file) { return fs::absolute(file).lexically_normal(); }
+fs::path whole(const fs::path& file) {
+  if (const auto inside = dataset_name(file.string(), fs::current_path())) return inside->from(fs::current_path());
+  return fs::absolute(file).lexically_normal();
+}
 
 /// What the first stage needs to be told to read two models; the fewest such keys are taken.
 struct Reading {
@@ -138,6 +142,7 @@ std::string scene_name(const fs::path& recipe) {
 /// As the recipe names a file: from its own folder where both lie below a folder of their own, whole otherwise.
 std::string named(const fs::path& file, const fs::path& recipe) {
   const fs::path there = whole(file), folder = whole(recipe).parent_path();
+  if (dataset_name(there.string())) return recipe::toml_text(there.string());
   const bool near = there.has_relative_path() && folder.has_relative_path() &&
                     *there.relative_path().begin() == *folder.relative_path().begin();
   return recipe::toml_text(near ? there.lexically_relative(folder).generic_string() : there.string());

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "common/gis/gdal_support.hpp"
+#include "common/recipe/dataset_name.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/stage/files.hpp"
 
@@ -47,7 +48,7 @@ bool begins_with(std::string_view text, std::string_view beginning) {
 
 /// True for a place on a network, a database or standard input, also behind a local file system (/vsizip//vsicurl/).
 bool is_remote(std::string_view name) {
-  if (name.find("://") != std::string_view::npos) return true;
+  if (holds_address(name)) return true;
   const auto begins = [&](std::string_view prefix) { return begins_with(name, prefix); };
   if (std::any_of(remote_prefixes.begin(), remote_prefixes.end(), begins)) return true;
   for (std::size_t at = name.find("/vsi"); at != std::string_view::npos; at = name.find("/vsi", at + 1)) {
@@ -80,11 +81,13 @@ bool is_xml(const fs::path& file) {
 /// Looks at files and at what they name.
 class Walk {
  public:
+  const std::set<std::string>& seen() const { return seen_; }  ///< the names of all files looked at
+
   void look(const fs::path& file, int depth = 0) {
     constexpr int deepest = 16;
     if (file.empty() || depth > deepest || !seen_.insert(file.lexically_normal().string()).second) return;
     if (is_remote(file.string()) && !network_allowed()) refuse_remote(file, file.string());
-    require_plain(file);
+    require_plain(file_behind(file));
     if (!is_xml(file)) return;
     const std::unique_ptr<CPLXMLNode, decltype(&CPLDestroyXMLNode)> root(CPLParseXMLFile(file.c_str()),
                                                                          CPLDestroyXMLNode);
@@ -101,8 +104,9 @@ class Walk {
     const std::string value = node.pszValue;
     if (value.empty() || value.size() > longest_name || value.find('\n') != std::string::npos) return;
     if (is_remote(value) && !network_allowed()) refuse_remote(file, value);
+    const auto inside = dataset_name(value, file.parent_path());
+    const fs::path named = inside ? file_behind(inside->from(file.parent_path())) : file.parent_path() / value;
     std::error_code unknown;
-    const fs::path named = file.parent_path() / value;
     if (fs::exists(named, unknown)) look(named, depth + 1);
   }
 
@@ -175,6 +179,17 @@ void require_local(const fs::path& file) {
   Walk().look(file);
 }
 
+std::vector<fs::path> files_named_from(const fs::path& file) {
+  const QuietErrors errors;
+  Walk walk;
+  walk.look(file);
+  std::vector<fs::path> files;
+  std::error_code unknown;
+  for (const std::string& name : walk.seen())
+    if (const fs::path plain = file_behind(name); fs::is_regular_file(plain, unknown)) files.push_back(plain);
+  return files;
+}
+
 }  // namespace talus::gdal
 
 namespace talus {
@@ -190,17 +205,19 @@ bool cheap_to_open(const fs::path& file) {
 }
 
 std::vector<fs::path> files_of_dataset(const fs::path& file) {
+  const gdal::QuietErrors errors;
+  std::vector<fs::path> files;
   try {
-    gdal::require_local(file);
+    files = gdal::files_named_from(file);
   } catch (const DataError&) {
     return {};  // whoever reads it says so
   }
-  const gdal::QuietErrors errors;
-  if (!cheap_to_open(file)) return {};
+  if (!cheap_to_open(file)) return files;
   const gdal::Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
-  if (!dataset) return {};
+  if (!dataset) return files;
   const CPLStringList names(dataset->GetFileList(), TRUE);
-  return {names.List(), names.List() + names.size()};
+  for (int i = 0; i < names.size(); ++i) files.push_back(file_behind(names[i]));
+  return files;
 }
 
 /// dem.prj or dem.PRJ beside dem.asc: read with grids and tables that GDAL does not open by itself.
@@ -224,7 +241,7 @@ std::vector<fs::path> with_sidecars(const std::vector<fs::path>& files) {
   };
   for (const fs::path& source : files) {
     const fs::path file = vector_source(source).file;
-    add(file);
+    add(file_behind(file));
     std::vector<fs::path> parts = files_of_dataset(file);
     if (is_plain(file)) add_projection(file, parts);
     for (const fs::path& part : parts) add(part.lexically_normal());

@@ -17,6 +17,10 @@ void close_the_network();
 /// device, or where it names a place on a network or a database and --network was not given. Missing files pass.
 void require_local(const std::filesystem::path& file);
 
+/// The plain files that a file names (the sources of a VRT, at any depth) and itself; of names that only GDAL knows the
+/// files behind them. Throws as require_local() does.
+std::vector<std::filesystem::path> files_named_from(const std::filesystem::path& file);
+
 }  // namespace talus::gdal
 
 namespace talus {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/recipe/dataset_name.hpp"
 #include "common/recipe/parsed.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/recipe/recipe.hpp"
@@ -33,12 +34,13 @@ std::string expand(const std::string& text, std::vector<std::string>& unset) {
   return result + text.substr(at);
 }
 
-/// GDAL's names of things inside files (NETCDF:file.nc:z) are no paths.
-bool names_a_dataset(const std::string& text) {
+/// What GDAL fetches (PG:dbname=x, /vsicurl/...) is no path, nor has it one of this machine in it.
+bool names_no_file(const std::string& text) {
   const std::size_t colon = text.find(':');
-  return colon != std::string::npos && colon > 1 &&
-         std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
-                     [](unsigned char c) { return std::isupper(c) || std::isdigit(c) || c == '_'; });
+  return text.starts_with("/vsi") ||
+         (colon != std::string::npos && colon > 1 &&
+          std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
+                      [](unsigned char c) { return std::isupper(c) || std::isdigit(c) || c == '_'; }));
 }
 
 class Reader : public Visitor {
@@ -86,13 +88,18 @@ class Reader : public Visitor {
                 fmt::format("Set it: export {}=...", name));
     }
     if (!unset.empty()) return;
-    const bool as_it_is = expanded.empty() || names_a_dataset(expanded);
-    source.file = as_it_is ? fs::path(expanded) : (folder_ / expanded).lexically_normal();
+    const auto inside = dataset_name(expanded, folder_);
+    const bool as_it_is = expanded.empty() || (!inside && names_no_file(expanded));
+    source.file = as_it_is ? fs::path(expanded)
+                  : inside ? fs::path(inside->from(folder_))
+                           : (folder_ / expanded).lexically_normal();
     value = source.text();
-    if (as_it_is || fs::path(given).is_absolute()) return;
+    const std::string path = inside ? inside->path : given;
+    if (as_it_is || fs::path(path).is_absolute()) return;
     const bool by_environment = given != expanded;
-    const fs::path from_here = fs::path(shown_).parent_path() / given;
-    show_path_as(source.file, by_environment ? given : from_here.lexically_normal().string(), given);
+    if (inside && by_environment) return;
+    const fs::path from_here = fs::path(shown_).parent_path() / path, file = inside ? folder_ / path : source.file;
+    show_path_as(file, by_environment ? given : from_here.lexically_normal().string(), path);
   }
   void numbers(std::string_view key, std::vector<double>& value, Range range, std::string_view) override {
     read_list(key, value, [&](const toml::node& node, const std::string& name, double& item) {

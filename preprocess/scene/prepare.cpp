@@ -11,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/map/raster.hpp"
 #include "common/map/statistics.hpp"
+#include "common/recipe/dataset_name.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/machine.hpp"
@@ -163,7 +164,7 @@ void judge_count(std::size_t points, const GridOptions& grid) {
 }  // namespace
 
 void add_input(std::vector<std::filesystem::path>& inputs, const std::filesystem::path& source) {
-  const std::filesystem::path file = vector_source(source).file;
+  const std::filesystem::path file = file_behind(vector_source(source).file);
   if (!file.empty() && std::find(inputs.begin(), inputs.end(), file) == inputs.end()) inputs.push_back(file);
 }
 

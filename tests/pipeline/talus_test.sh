@@ -228,6 +228,51 @@ test_make_and_talus_go_by_one_rule() {
   [[ $(grep -c 'is up to date$' stderr) -eq 3 ]] || fail "make ran what talus had made: $(<stderr)"
 }
 
+# pack: before.asc into every kind of file that a recipe names otherwise than by a path.
+pack() {
+  gdal_translate -q -of netCDF -a_srs EPSG:32633 before.asc place/dem.nc
+  gdal_translate -q -of GPKG -a_srs EPSG:32633 -ot Float32 before.asc place/dem.gpkg
+  gdal_translate -q -a_srs EPSG:32633 before.asc dem.tif
+  python3 -m zipfile -c place/dem.zip dem.tif
+  tar -cf place/dem.tar dem.tif
+  gzip -nc dem.tif >place/dem.tif.gz
+}
+
+# Their paths count from the recipe's folder, and their bytes decide what is up to date.
+test_inputs_that_only_gdal_can_name_are_found_and_watched() {
+  need_tool gdal_translate
+  scene
+  mkdir place
+  gdal_translate -q -a_srs EPSG:32633 after.asc place/after.tif
+  pack
+  cat >place/part.vrt <<'XML'
+<VRTDataset rasterXSize="20" rasterYSize="20"><SRS>EPSG:32633</SRS>
+<GeoTransform>500000, 10, 0, 5000200, 0, -10</GeoTransform><VRTRasterBand dataType="Float32" band="1"><SimpleSource>
+<SourceFilename relativeToVRT="1">NETCDF:"dem.nc":Band1</SourceFilename><SourceBand>1</SourceBand>
+</SimpleSource></VRTRasterBand></VRTDataset>
+XML
+  sed -i '/^\[postprocess/,$d; s/after.asc/after.tif/' recipe.toml
+  local name again='is up to date' number=0 lift=0
+  for name in 'NETCDF:"dem.nc":Band1' 'GPKG:dem.gpkg:dem' '/vsizip/dem.zip/dem.tif' \
+    '/vsitar/dem.tar/dem.tif' '/vsigzip/dem.tif.gz' "/vsizip/$PWD/place/dem.zip/dem.tif" part.vrt; do
+    out=out$((number += 1))
+    sed "s#^before_dem = .*#before_dem = '$name'#" recipe.toml >place/recipe.toml
+    expect_exit 0 "$bin/talus-preprocess" place/recipe.toml --out $out --if-outdated
+    (cd place && expect_exit 0 "$bin/talus-preprocess" recipe.toml --out ../$out --if-outdated)
+    expect_words "$again"
+    grid before.asc "$bowl + $((lift += 1))"
+    pack
+    expect_exit 0 "$bin/talus-preprocess" place/recipe.toml --out $out --if-outdated
+    expect_words 'has changed'
+    mv place moved
+    if [[ $name != *"$PWD"* ]]; then
+      expect_exit 0 "$bin/talus-preprocess" moved/recipe.toml --out $out-moved --if-outdated
+    fi
+    mv moved place
+    rm -rf $out $out-moved
+  done
+}
+
 test_check_lists_the_faults_of_all_tables_and_writes_nothing() {
   scene
   change 's/layer_height_m = 2.0/layer_height_m = -2.0/; s/end_time_s = 3.0/end_tme_s = 3.0/'

@@ -198,7 +198,7 @@ TEST_F(RecipeFile, replaces_environment_variables_in_paths_and_leaves_names_insi
   EXPECT_EQ(faults("[solve]\nterrain = \"${TALUS_TEST_DATA}/dem.tif\""),
             "r.toml:2:11: [solve] terrain = \"${TALUS_TEST_DATA}/dem.tif\" (the environment variable TALUS_TEST_DATA "
             "is not set). Set it: export TALUS_TEST_DATA=...");
-  EXPECT_EQ(read("[solve]\nterrain = \"NETCDF:dem.nc:z\"").terrain, "NETCDF:dem.nc:z");
+  EXPECT_EQ(read("[solve]\nterrain = \"NETCDF:dem.nc:z\"").terrain, "NETCDF:" + (scratch / "dem.nc").string() + ":z");
   EXPECT_EQ(read("[solve]\nterrain = \"\"").terrain, "");
 }
 
