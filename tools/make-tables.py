@@ -29,7 +29,6 @@ BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end of table -->)", re
 SCORES = ROOT / "docs/benchmarks/scores.csv"
 VALIDATION = ROOT / "docs/benchmarks/validation.csv"
 REAL_EVENTS = ("ryggfonn2021", "cascade2021", "frank-slide")
-DAY = "2026-11-26"  # of the rows of speed-against-error.csv, which name their commit alone
 # What a case is, and what holds it; the cases in full are on the page of the validation.
 CASES = {
     "A1": ("column under its own weight", "closed form"),
@@ -143,6 +142,12 @@ def validation():
     return [*lines, "", *textwrap.wrap(text, 120, break_on_hyphens=False)]
 
 
+def commits_and_days(rows, commit, day):
+    """"commit 1a2b3c4, 2026-11-26" of the rows; tables made before they had a column of days name none."""
+    commits, days = ({r.get(column) for r in rows} - {None, ""} for column in (commit, day))
+    return ", ".join([f"commit {', '.join(sorted(c[:7] for c in commits))}", *sorted(days)])
+
+
 def speed():
     """Least time of each method below bounds of the error, on the Frank Slide at one modulus and on one GPU."""
     with (ROOT / "docs/benchmarks/speed-against-error.csv").open(encoding="utf-8") as table:
@@ -158,11 +163,11 @@ def speed():
         times = [min((t for e, t in mine if e < bound), default=None) for bound in bounds]
         lines.append(f"| {name} | " + " | ".join("not reached" if t is None else f"{t:.2g} s" for t in times) +
                      f" | {min(e for e, _ in mine):.1f} % |")
-    commit, machine = next((r["commit"], r["machine"].split(",")[0]) for r in rows if r["commit"])
-    text = (f"Frank Slide, 100 s, Young's modulus 1e9 Pa for all, double precision, one {machine}, commit "
-            f"{commit[:7]}, {DAY}, by `make -C pipelines/benchmarks speed-against-error`. Error: share of the deposit "
-            "that lies elsewhere than on the finest grid. All methods were run on cells of 40 m; all but the "
-            "reference paper's scheme on cells of 20 m too.")
+    machine = next(r["machine"].split(",")[0] for r in rows if r["machine"])
+    text = (f"Frank Slide, 100 s, Young's modulus 1e9 Pa for all, double precision, one {machine}, "
+            f"{commits_and_days(rows, 'commit', 'date')}, by `make -C pipelines/benchmarks speed-against-error`. "
+            "Error: share of the deposit that lies elsewhere than on the finest grid. All methods were run on cells of "
+            "40 m; all but the reference paper's scheme on cells of 20 m too.")
     return [*lines, "", *textwrap.wrap(text, 120, break_on_hyphens=False)]
 
 
@@ -180,8 +185,7 @@ def kernels():
                     lines.append(f"| {shape}, {precision} | {int(near['points']):,} | "
                                  f"{float(near['step_us']) / 1e3:.3g} "
                                  f"| {float(near['seconds_per_point_and_step']):.1e} | {near['bytes_per_point']} |")
-    commits, days = sorted({r["commit"][:7] for r in rows}), sorted({r["date"] for r in rows})
-    return [*lines, "", f"{rows[0]['place']}, explicit steps, commit {', '.join(commits)}, {', '.join(days)}, by "
+    return [*lines, "", f"{rows[0]['place']}, explicit steps, {commits_and_days(rows, 'commit', 'date')}, by "
             "`make -C pipelines/benchmarks kernels`."]
 
 
@@ -195,7 +199,7 @@ def number(text, digits, unit=""):
 
 
 def made(rows, words):
-    return f"Commit {rows[0]['version'][:7]}, {rows[0]['day']}, {words}"
+    return f"C{commits_and_days(rows, 'version', 'day')[1:]}, {words}"
 
 
 def events():

@@ -13,6 +13,7 @@ import argparse
 import copy
 import csv
 import dataclasses
+import datetime
 import functools
 import json
 import math
@@ -25,8 +26,9 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 COLUMNS = [
-    "set", "scene", "commit", "machine", "method", "asked", "spacing_m", "layer_height_m", "youngs_modulus_Pa",
-    "points", "steps", "newton_iterations", "linear_iterations", "steps_cut", "step_over_cfl_mean", "loop_s",
+    "set", "scene", "commit", "date", "machine", "method", "asked", "spacing_m", "layer_height_m",
+    "youngs_modulus_Pa", "points", "steps", "newton_iterations", "linear_iterations", "steps_cut", "step_over_cfl_mean",
+    "loop_s",
     "process_s", "memory_bytes", "elsewhere_than_finest_percent", "elsewhere_than_explicit_percent", "creep_m_s",
 ]  # fmt: skip
 
@@ -262,7 +264,8 @@ def solve(arguments, home):
         return
     words = [arguments.bin / "talus-solve", home / "recipe.toml", "--out", home, "--on", arguments.on]
     code, seconds = command(words, home / "log")
-    (home / "time.json").write_text(json.dumps({"process_s": seconds}), encoding="utf-8")
+    timed = {"process_s": seconds, "date": f"{datetime.date.today()}"}
+    (home / "time.json").write_text(json.dumps(timed), encoding="utf-8")
     if code != 0:
         (home / "failed").touch()
     print(f"{home.name}: {seconds:.2f} s" + (f", exit code {code}" if code else ""), flush=True)
@@ -334,8 +337,10 @@ def cost_of(home, deposit):
     """What a run was made with, and what it took."""
     facts, history = deposit.facts, deposit.history
     text = lambda value: value.decode() if isinstance(value, bytes) else str(value)
+    timed = json.loads((home / "time.json").read_text())
     return {
         "commit": text(facts["version"]).split("(")[-1].rstrip(")"),
+        "date": timed.get("date", ""),
         "machine": text(facts["on"]),
         "points": int(facts["particles"]),
         "steps": int(facts["steps"]),
@@ -343,7 +348,7 @@ def cost_of(home, deposit):
         "linear_iterations": int(history["linear_iterations"][-1]),
         "steps_cut": int(history["step_cuts"][-1]),
         "loop_s": f"{float(facts['wall_time_s']):.3f}",
-        "process_s": f"{json.loads((home / 'time.json').read_text())['process_s']:.3f}",
+        "process_s": f"{timed['process_s']:.3f}",
         "memory_bytes": f"{float(facts['memory_bytes']):.0f}",
     }
 

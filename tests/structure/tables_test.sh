@@ -68,6 +68,17 @@ test_rows_of_two_commits_or_of_one_case_twice_are_refused() {
   expect_words 'rows of X9'
 }
 
+test_days_and_commits_are_those_of_the_rows() {
+  tree
+  local rows=tree/docs/benchmarks/speed-against-error.csv
+  sed -i '2,$s/,074f84ab9,[-0-9]*,/,0123abcde,2031-05-06,/' "$rows"
+  expect_exit 0 make_tables
+  tr '\n' ' ' <tree/README.md | grep -qF 'commit 0123abc, 2031-05-06, by' || fail "the day of the rows is not shown"
+  sed -i 's/,2026-[-0-9]*$/,2031-07-08/' tree/docs/benchmarks/kernels-h200.csv
+  expect_exit 0 make_tables
+  grep -qF '2031-07-08' tree/docs/explanation/performance.md || fail "the day of the kernels' rows is not shown"
+}
+
 test_rows_of_two_commits_are_not_drawn() {
   local table=$TALUS_SOURCE/docs/benchmarks/speed-against-error.csv commit
   commit=$(sed -n '$p' "$table" | grep -oE ',[0-9a-f]{9},' | tr -d ,)
