@@ -32,13 +32,26 @@ def call(words, **more):
         sys.exit(f"tools/make-pictures.py: {' '.join(str(w) for w in words)} ended with {run.returncode}")
 
 
+def in_few_colours(image):
+    """The picture in a palette of 256, without dithering; as it is where that would be seen: where a colour in a
+    thousand moves by more than 12 of 255, or any by more than 40."""
+    from PIL import Image, ImageChops  # pylint: disable=import-outside-toplevel
+    plain = image.convert("RGB")
+    if "A" in image.getbands() and image.getchannel("A").getextrema()[0] < 255:
+        return image
+    few = plain.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.NONE)
+    counts = [ImageChops.difference(plain, few.convert("RGB")).getchannel(c).histogram() for c in range(3)]
+    seen = any(sum(count[13:]) > 1e-3 * sum(count) or sum(count[41:]) > 0 for count in counts)
+    return image if seen else few
+
+
 def shrink(picture, width=1400):
-    """No wider than a page shows it, to keep the repository small. Fewer colours would take those of the legend."""
+    """No wider than a page shows it, and in few colours, to keep the repository small."""
     from PIL import Image  # pylint: disable=import-outside-toplevel
     with Image.open(picture) as image:
         if image.width > width:
             image = image.convert("RGB").resize((width, round(image.height * width / image.width)), Image.LANCZOS)
-        image.save(picture, optimize=True)
+        (image if image.mode == "P" else in_few_colours(image)).save(picture, optimize=True)
 
 
 def make_tutorial(page, asked, wanted):
@@ -132,8 +145,7 @@ def make_all(names, asked):
         else:
             call([sys.executable, ROOT / name])
         for picture in pictures:
-            if kind != "script":
-                shrink(FOLDER / picture)
+            shrink(FOLDER / picture)
             print(FOLDER / picture)
 
 

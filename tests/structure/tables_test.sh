@@ -79,6 +79,36 @@ test_days_and_commits_are_those_of_the_rows() {
   grep -qF '2031-07-08' tree/docs/explanation/performance.md || fail "the day of the kernels' rows is not shown"
 }
 
+test_pictures_lose_colours_where_nobody_sees_it() {
+  /usr/bin/python3 -c 'import PIL' 2>/dev/null || need_tool python3-pil
+  cat >look.py <<'PYTHON'
+import importlib.util, pathlib, random, sys
+from PIL import Image, ImageChops
+spec = importlib.util.spec_from_file_location("pictures", sys.argv[1])
+pictures = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(pictures)
+random.seed(1)
+def through(image):
+    image.save("it.png")
+    pictures.shrink(pathlib.Path("it.png"))
+    with Image.open("it.png") as shrunk:
+        worst = max(high for _, high in ImageChops.difference(image.convert("RGB"), shrunk.convert("RGB")).getextrema())
+        return shrunk.mode, worst
+shaded = Image.new("RGB", (500, 400))
+shaded.putdata([(128 + x // 5, 128 + x // 5, 120 + y // 4) if x > 60 else (200, 30 + 50 * (y // 100), 0)
+                for y in range(400) for x in range(500)])
+mode, worst = through(shaded)
+assert mode == "P" and worst <= 40, f"a shaded map: {mode}, {worst}"
+noise = Image.new("RGB", (300, 300))
+noise.putdata([tuple(random.randrange(256) for _ in range(3)) for _ in range(90000)])
+assert through(noise) == ("RGB", 0), "all colours there are became few"
+clear = Image.new("RGBA", (50, 50), (10, 20, 30, 99))
+assert through(clear)[0] == "RGBA", "what shines through is lost"
+assert through(shaded.quantize(64))[1] == 0, "few colours became others"
+PYTHON
+  expect_exit 0 /usr/bin/python3 look.py "$TALUS_SOURCE/tools/make-pictures.py"
+}
+
 test_rows_of_two_commits_are_not_drawn() {
   local table=$TALUS_SOURCE/docs/benchmarks/speed-against-error.csv commit
   commit=$(sed -n '$p' "$table" | grep -oE ',[0-9a-f]{9},' | tr -d ,)
