@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/gis/ascii_grid.hpp"
+#include "common/gis/raster_file.hpp"
 #include "common/map/raster.hpp"
 
 class GDALDataset;

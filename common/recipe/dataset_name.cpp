@@ -40,18 +40,18 @@ fs::path file_on_way(const fs::path& whole) {
   return whole;
 }
 
-std::optional<DatasetName> in_file_system(std::string before, std::string_view rest, std::string after);
+std::optional<DatasetName> in_file_system(std::string before, std::string_view rest, const std::string& after);
 
 /// A path that may be a name of a file system itself.
-std::optional<DatasetName> nested(std::string before, std::string_view rest, std::string after) {
+std::optional<DatasetName> nested(std::string before, std::string_view rest, const std::string& after) {
   if (rest.starts_with("vsi") && rest.find('/') != std::string_view::npos)  // /vsizip/vsigzip/...
-    return in_file_system(std::move(before), "/" + std::string(rest), std::move(after));
-  if (rest.starts_with("/vsi")) return in_file_system(std::move(before), rest, std::move(after));
+    return in_file_system(std::move(before), "/" + std::string(rest), after);
+  if (rest.starts_with("/vsi")) return in_file_system(std::move(before), rest, after);
   if (rest.empty() || holds_address(rest)) return std::nullopt;
-  return DatasetName{std::move(before), std::string(rest), std::move(after)};
+  return DatasetName{std::move(before), std::string(rest), after};
 }
 
-std::optional<DatasetName> in_file_system(std::string before, std::string_view rest, std::string after) {
+std::optional<DatasetName> in_file_system(std::string before, std::string_view rest, const std::string& after) {
   const auto found = std::ranges::find_if(file_systems, [&](const auto& one) { return rest.starts_with(one.prefix); });
   if (found == file_systems.end()) return std::nullopt;
   std::size_t at = found->prefix.size();
