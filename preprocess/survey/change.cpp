@@ -234,7 +234,8 @@ std::optional<Fault> wrong_order(const Order& o, const SurveyFiles& files) {
              : fmt::format("more than {:g} times as much rose as fell, and mass comes from somewhere", swells);
   return Fault{what, why,
                std::string("Is before_dem the later one? Then swap before_dem and after_dem") +
-                   (files.aligned ? "" : ". Is one too high? Then mode = \"apply\" in [preprocess.coregistration]")};
+                   (files.aligned ? "" : ". Is one too high? Then mode = \"apply\" in [preprocess.coregistration]") +
+                   ". Was ground built up (a dam, a dump, ice) or grown over? Then all is well"};
 }
 
 void judge_order(const Order& order, const SurveyFiles& files) {

@@ -109,7 +109,8 @@ void refuse_feet(const std::vector<Patch>& patches, const Placement& placement,
     const bool later = feet > 1;
     throw DataError(
         {fmt::format("{}: its relief is {:.3f} times that of the survey before", after_file.string(), ratio),
-         later ? "its heights look like feet" : "the heights of the survey before look like feet",
+         fmt::format("{} look like feet, or were stretched to be drawn; a known summit tells",
+                     later ? "its heights" : "the heights of the survey before"),
          fmt::format("Declare it in {0}_dem: gdal_edit.py -units foot (or us-survey-foot) FILE; or, where the other "
                      "one is said to be in feet and is not, in {1}_dem: gdal_edit.py -units metre FILE",
                      later ? "after" : "before", later ? "before" : "after")});

@@ -49,8 +49,9 @@ std::string unit_advice(VerticalUnit unit) {
     case VerticalUnit::metre:
       return "The recipe says metres: if it is wrong, say vertical_unit = \"foot\" in [preprocess]";
     default:
-      return "If they are in feet, say so: vertical_unit = \"foot\" (or \"us-survey-foot\") in [preprocess]; it makes "
-             "mountains of metres three times lower";
+      return "Where they are feet, say so: vertical_unit = \"foot\" (or \"us-survey-foot\") in [preprocess]; it makes "
+             "mountains of metres three times lower. Where places are in another unit, name the CRS: gdal_edit.py "
+             "-a_srs";
   }
 }
 
@@ -97,7 +98,9 @@ bool judge_fill_values(const Raster& heights, const std::filesystem::path& file)
          fmt::format("the nearest other height is {:g} m, all others span {:.4g} m: a value that stands for missing "
                      "cells, which the file does not declare as nodata, or a level of another unit or datum",
                      p.next, span),
-         fmt::format("Declare it: gdal_edit.py -a_nodata {:.17g} {}", p.value, file.string())},
+         fmt::format("Look at the place. Where it is no ground, declare the value: gdal_edit.py -a_nodata {:.17g} {}. "
+                     "Where it is (a lake, the sea, a roof), bring the file to one unit and datum, or all is well",
+                     p.value, file.string())},
         {{"cells", static_cast<double>(p.cells), "1"}, {"value", p.value, "m"}, {"jump", jump, "m"}});
     return true;
   };
@@ -142,7 +145,8 @@ void judge_heights(const Raster& surface, const std::filesystem::path& file, Ver
                    file.string(), steep, highest),
        fmt::format("few terrains exceed {:.0f} degrees there, and no mountain is higher than {:.0f} m. Rock walls of a "
                    "mountain do, and then all is well; or heights are in feet, which the file does not say (as feet it "
-                   "were {:.0f} degrees), or places in another unit than heights. A known summit or bench mark tells",
+                   "were {:.0f} degrees), or places in another unit than heights. The height of a known summit tells "
+                   "of feet, the distance of two known places of the other",
                    steep_deg, highest_mountain,
                    std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
        unit_advice(unit)},

@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is only implausible is refused by name, and goes on where the recipe insists; growth and factors of sources.
+#include <algorithm>
+#include <functional>
 #include <numbers>
 
 #include "common/domain/domain.hpp"
 #include "common/gis/crs.hpp"
 #include "data_samples/terrains.hpp"
 #include "preprocess/particles/seed.hpp"
+#include "preprocess/terrain/plausible_ground.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/preprocess/scene.hpp"
 
@@ -209,7 +212,8 @@ TEST(plausible, surveys_in_the_wrong_order_are_refused_and_accepted_by_name) {
   Valley valley;
   EXPECT_EQ(valley.fault(), "");
   std::swap(valley.options.before_dem, valley.options.after_dem);
-  EXPECT_TRUE(holds(valley.fault(), {"higher than what fell", "accept = [\"swapped-surveys\"] in [preprocess]"}));
+  EXPECT_TRUE(holds(valley.fault(), {"higher than what fell", "swap before_dem", "built up",
+                                     "accept = [\"swapped-surveys\"] in [preprocess]"}));
   valley.options.accept = {"false-lengths"};
   EXPECT_NE(valley.fault(), "") << "another name is no acceptance";
   valley.options.accept = {"swapped-surveys"};
@@ -228,6 +232,23 @@ TEST(plausible, all_that_is_implausible_is_said_at_once_and_nothing_that_the_rec
   valley.options.working_crs = "EPSG:3857";
   valley.options.vertical_unit = VerticalUnit::metre;
   EXPECT_TRUE(holds(valley.fault(), {"Name another working_crs", "The recipe says metres"}));
+}
+
+TEST(plausible, steep_ground_names_every_cause_and_how_to_tell_them_apart) {
+  const MapGrid grid = test::grid_of(60, 40, 10);
+  const auto refusal = [&](const std::function<double(double)>& height) {
+    const Raster surface = test::raster_of(grid, [&](double x, double) { return height(x - grid.west); });
+    return test::fault_of<DataError>([&] { judge_heights(surface, "dem.tif", VerticalUnit::declared); });
+  };
+  const auto rock = [](double x) { return 900 + 0.4 * std::min(x, 440.0) + 1.45 * std::clamp(x - 440, 0.0, 120.0); };
+  const auto feet = [](double x) { return (900 + 0.45 * x) / 0.3048; };
+  const auto kilometres = [](double x) { return 900 + 0.03 * x * 1000; };
+  const auto high = [](double x) { return 29032 + 0.1 * x; };
+  for (const auto& height : std::vector<std::function<double(double)>>{rock, feet, kilometres, high})
+    EXPECT_TRUE(holds(refusal(height), {"dem.tif", "Rock walls", "in feet", "another unit than heights", "known summit",
+                                        "two known places", "vertical_unit", "gdal_edit.py -a_srs", "steep-ground"}));
+  for (const double slope : {0.3, 0.7, 1.0, 1.15})
+    EXPECT_EQ(refusal([&](double x) { return 4000 + slope * x; }), "") << slope;
 }
 
 /// A scar whose deposit the river took: swapped, mass comes from nowhere.

@@ -144,7 +144,8 @@ TEST_F(survey, says_so_when_one_model_looks_like_feet) {
   Raster feet = after;
   for (double& z : feet.values) z /= 0.3048;
   rewrite_after(feet);
-  EXPECT_TRUE(holds(data_fault(), {"look like feet", "Declare it in after_dem: gdal_edit.py -units foot"}));
+  EXPECT_TRUE(holds(data_fault(),
+                    {"look like feet", "stretched to be drawn", "Declare it in after_dem: gdal_edit.py -units foot"}));
 }
 
 /// A unit of heights, and the name of it that a file declares.

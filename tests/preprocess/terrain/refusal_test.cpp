@@ -55,7 +55,8 @@ TEST_F(refusal, values_that_stand_for_missing_cells) {
       for (int column = 30; column < 35; ++column) filled.at(column, row) = value;
     rewrite_after(filled);
     EXPECT_TRUE(holds(data_fault(), {fmt::format("./after.tif: 20 cells hold {:g} exactly", value),
-                                     fmt::format("gdal_edit.py -a_nodata {:g} ./after.tif", value), "fill-value"}))
+                                     fmt::format("gdal_edit.py -a_nodata {:g} ./after.tif", value), "a lake",
+                                     "one unit and datum", "fill-value"}))
         << value;
   }
   Raster lake = after;
