@@ -54,13 +54,13 @@ bool is_word_for_nodata(std::string_view word) {
 /// One name for each thing that a header says, by all the names it goes by.
 std::string_view meaning_of(const std::string& key) {
   static constexpr std::pair<std::string_view, std::string_view> names[] = {
-      {"columns", " ncols nbcols ncolumns "},
-      {"rows", " nrows nbrows nlines "},
+      {"columns", " ncols nbcols ncolumns mx "},
+      {"rows", " nrows nbrows nlines my "},
       {"west", " xllcorner xulcorner "},
       {"south", " yllcorner "},
       {"north", " yulcorner "},
-      {"first x", " xllcenter xllcentre xulcenter xulcentre "},
-      {"lowest y", " yllcenter yllcentre "},
+      {"first x", " xllcenter xllcentre xulcenter xulcentre xlower xll "},
+      {"lowest y", " yllcenter yllcentre ylower yll "},
       {"highest y", " yulcenter yulcentre "},
       {"cell", " cellsize "},
       {"dx", " dx xdim "},
@@ -93,14 +93,23 @@ bool begins_a_key(const std::string& word) {
          !lower(word).starts_with("nan") && !lower(word).starts_with("inf");
 }
 
+/// Words of a line of the header, the key first. GeoClaw has it last: "60 mx", "10 10 cellsize".
+std::vector<std::string> key_first(std::vector<std::string> words) {
+  std::rotate(words.begin(), words.end() - 1, words.end());
+  return words;
+}
+
 /// Lines of the header, gathered by meaning.
 struct Gathered {
   AsciiHeader header;
+  bool keys_last = false;  ///< as GeoClaw writes them
   std::map<std::string_view, std::string> values;
   bool first = true;
 
   void take(std::string_view line) {
-    const std::vector<std::string> words = words_of(line);
+    std::vector<std::string> words = words_of(line);
+    if (keys_last) words = key_first(std::move(words));
+    header.usual = header.usual && !keys_last;
     const std::string key = lower(words.front());
     const std::string_view meaning = meaning_of(key);
     // GDAL looks for a known key at the very start, and wants blanks between key and value.
@@ -139,7 +148,8 @@ std::optional<double> south_of(const Gathered& g, double dy, double rows) {
 std::optional<AsciiHeader> written(Gathered&& g) {
   const auto columns = g.number("columns"), rows = g.number("rows");
   const auto cell = g.number("cell");
-  const auto dx = g.number("dx") ? g.number("dx") : cell, dy = g.number("dy") ? g.number("dy") : cell;
+  const auto dx = g.number("dx") ? g.number("dx") : cell;
+  const auto dy = g.number("dy") ? g.number("dy") : cell ? cell : dx;  // GeoClaw names one of square cells
   if (!columns || !rows || !dx || !dy) return std::nullopt;
   const auto west = west_of(g, *dx), south = south_of(g, *dy, *rows);
   if (!west || !south) return std::nullopt;
@@ -175,7 +185,11 @@ std::optional<AsciiHeader> ascii_header(std::string_view start) {
     if (comment || (words.empty() && gathered.first)) gathered.header.usual = false;
     if (!words.empty() && !comment) {
       // "NODATA -9999" is a key though a cell may say NODATA too.
-      const bool key = begins_a_key(words[0]) || (words.size() == 2 && !meaning_of(lower(words[0])).empty());
+      const bool last = words.size() > 1 && ascii_number(words[0]) && !meaning_of(lower(words.back())).empty();
+      if (gathered.first) gathered.keys_last = last;
+      const bool key = gathered.keys_last
+                           ? last
+                           : begins_a_key(words[0]) || (words.size() == 2 && !meaning_of(lower(words[0])).empty());
       if (!key) break;
       gathered.take(line);
     }

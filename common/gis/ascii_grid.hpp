@@ -32,11 +32,12 @@ bool begins_as_ascii_grid(const std::filesystem::path& file);
 
 /// A file that may be an ASCII grid. Where its header names columns and rows it is one, and path() is what GDAL should
 /// open: the file itself, or a stand-in in memory with the usual header. That covers keys in any order, case and
-/// spelling (xllcentre, nbcols, nodata), one axis by corner and the other by centre, a byte-order mark, comments,
-/// colons, and decimal commas and D-exponents; where single cells hold words for nodata (*, NA) or are parted by commas
-/// or semicolons, all cells are in the stand-in, else they stay in the file. Throws DataError naming line, column and
-/// word for a cell that is no number, for one more than the header names (thousands parted by a sign make two of one),
-/// and for decimal commas that could all part thousands, and DataError of a file in UTF-16.
+/// spelling (xllcentre, nbcols, nodata), behind its value (GeoClaw), one axis by corner and the other by centre, a
+/// byte-order mark, comments, colons, and decimal commas and D-exponents; where single cells hold words for nodata (*,
+/// NA) or are parted by commas or semicolons, all cells are in the stand-in, else they stay in the file. Throws
+/// DataError naming line, column and word for a cell that is no number, for one more than the header names (thousands
+/// parted by a sign make two of one), and for decimal commas that could all part thousands, and DataError of a file in
+/// UTF-16.
 class AsciiGrid {
  public:
   explicit AsciiGrid(const std::filesystem::path& file);

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <mutex>
 
+#include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
 #include "common/text_encoding.hpp"
 
@@ -101,6 +102,12 @@ OGRSpatialReference spatial_reference(const std::string& wkt) {
   return srs;
 }
 
+bool places_nothing(const OGRSpatialReference* srs) {
+  if (srs == nullptr || srs->IsEmpty()) return true;
+  const bool is_local = srs->IsLocal() != 0 && std::abs(srs->GetLinearUnits() - 1) <= 1e-9;
+  return is_local || (srs->IsVertical() != 0 && srs->IsCompound() == 0);
+}
+
 OGRSpatialReference horizontal(const OGRSpatialReference& srs) {
   OGRSpatialReference result(srs);
   result.StripVertical();
@@ -109,7 +116,7 @@ OGRSpatialReference horizontal(const OGRSpatialReference& srs) {
 }
 
 std::string horizontal_wkt(const OGRSpatialReference* srs) {
-  if (srs == nullptr || srs->IsEmpty() || (srs->IsVertical() != 0 && srs->IsCompound() == 0)) return "";
+  if (places_nothing(srs)) return "";
   const OGRSpatialReference flat = horizontal(*srs);
   const std::array<const char*, 3> options{"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* wkt = nullptr;
@@ -127,12 +134,14 @@ std::string short_name(const OGRSpatialReference& srs) {
   return name != nullptr && *name != '\0' ? as_utf8(name) : "an unnamed CRS";
 }
 
-Transformation transformation(const OGRSpatialReference& from, const OGRSpatialReference& to) {
+Transformation transformation(const OGRSpatialReference& from, const OGRSpatialReference& to, const std::string& what) {
   const QuietErrors errors;
   Transformation result(OGRCreateCoordinateTransformation(&from, &to));
   if (!result)
-    throw DataError({fmt::format("no transformation from {} to {}", short_name(from), short_name(to)), errors.text(),
-                     "Reproject the file beforehand: gdalwarp -t_srs EPSG:<code> in.tif out.tif"});
+    throw DataError({fmt::format("{}: no transformation from {} to {}", what, short_name(from), short_name(to)),
+                     errors.text().substr(0, 120),
+                     "One of them is not the CRS of these coordinates, or is not known well enough: name the right one "
+                     "(gdal_edit.py -a_srs EPSG:<code> for a raster, ogr2ogr -a_srs for shapes)"});
   return result;
 }
 
@@ -151,6 +160,23 @@ std::string utm_zone(const OGRSpatialReference& srs, double x, double y) {
   int zone = std::min(60, static_cast<int>(std::floor((x + 180) / 6)) + 1);
   if (zone == 31 && x >= 3 && y >= 56 && y < 64) zone = 32;  // western Norway lies in 32 by agreement
   return fmt::format("EPSG:{}", (y < 0 ? 32700 : 32600) + zone);
+}
+
+Fault no_dataset(const fs::path& file, const std::string& wanted, const std::string& reason, const std::string& tool) {
+  const std::string name = file.string(), start = start_of(file, 4);
+  if (start.starts_with("LASF"))
+    return {name + ": a point cloud (LAS or LAZ)", wanted + " is wanted",
+            fmt::format("Make a raster of its ground points: pdal translate {} {} filters.range "
+                        "--filters.range.limits=\"Classification[2:2]\" --writers.gdal.resolution=1 "
+                        "--writers.gdal.output_type=mean",
+                        name, fs::path(file).replace_extension(".tif").string())};
+  if (start.starts_with("PK\x03\x04"))
+    return {name + ": a ZIP archive", wanted + " is wanted",
+            fmt::format("Unpack it and name what lies in it: unzip {}", name)};
+  if (start.starts_with("\x1f\x8b"))
+    return {name + ": packed by gzip", wanted + " is wanted",
+            fmt::format("Unpack it (gunzip -k {}) and name {}", name, fs::path(file).replace_extension("").string())};
+  return {name + ": not " + wanted + " that can be read", reason, fmt::format("Look at it: {} {}", tool, name)};
 }
 
 void place(GDALDataset& dataset, const MapGrid& grid) {

@@ -66,14 +66,25 @@ OGRSpatialReference horizontal(const OGRSpatialReference& srs);
 /// WKT2 of the horizontal part of a CRS (heights are metres in all of this project); "" for none.
 std::string horizontal_wkt(const OGRSpatialReference* srs);
 
+/// Whether a CRS (null: none) says nothing of places: it is empty, vertical alone, or local coordinates in metres, which
+/// are anybody's.
+bool places_nothing(const OGRSpatialReference* srs);
+
 /// Short name for messages: "EPSG:32149", else the CRS's own name.
 std::string short_name(const OGRSpatialReference& srs);
 
-/// The transformation from one CRS to another. Throws DataError when there is no way between them.
-Transformation transformation(const OGRSpatialReference& from, const OGRSpatialReference& to);
+/// The transformation from one CRS to another. Throws DataError, which names `what` is moved, when there is no way
+/// between them.
+Transformation transformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
+                              const std::string& what = "a file");
 
 /// "EPSG:32611", the UTM zone of a point given in `srs`; "EPSG:<a metric one>" when it cannot be told.
 std::string utm_zone(const OGRSpatialReference& srs, double x, double y);
+
+/// The fault of a file that GDAL does not open as `wanted`: what it is where its first bytes tell, with the command
+/// that makes something readable of it, else GDAL's reason and the `tool` that looks at it.
+Fault no_dataset(const std::filesystem::path& file, const std::string& wanted, const std::string& reason,
+                 const std::string& tool);
 
 /// Gives a dataset the place and the CRS of a grid.
 void place(GDALDataset& dataset, const MapGrid& grid);

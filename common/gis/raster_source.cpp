@@ -41,8 +41,7 @@ Dataset open(const fs::path& file, const AsciiGrid& ascii) {
     const bool plain = file.is_absolute() && !file.string().starts_with("/vsi");
     if (plain && !fs::exists(file))
       throw DataError({file.string() + ": no such file", "", "Check the path in the recipe"});
-    throw DataError(
-        {file.string() + ": not a raster that can be read", errors.text(), "Look at it: gdalinfo " + file.string()});
+    throw DataError(no_dataset(file, "a raster", errors.text(), "gdalinfo"));
   }
   if (dataset->GetDriver() != nullptr && EQUAL(dataset->GetDriver()->GetDescription(), "XYZ"))
     for (TableLines lines(file, copy_again); lines.next();) {  // GDAL guesses at signs that part thousands
@@ -111,6 +110,7 @@ class PlainCells final : public GDALDataset {
     std::copy(transform_.begin(), transform_.end(), g);
     return CE_None;
   }
+  const fs::path& file() const { return source_.file(); }
   std::exception_ptr take_fault() { return std::exchange(fault_, nullptr); }
 
  private:
@@ -193,7 +193,7 @@ double cell_size(const RasterSource& source, const GeoTransform& g, OGRCoordinat
 MapGrid grid_around(const RasterSource& source, const PlainCells& cells, const OGRSpatialReference& srs) {
   GeoTransform g{};
   const_cast<PlainCells&>(cells).GetGeoTransform(g.data());
-  const Transformation to = transformation(*cells.GetSpatialRef(), srs);
+  const Transformation to = transformation(*cells.GetSpatialRef(), srs, source.file().string());
   const double cell = cell_size(source, g, *to);
   const double c = source.columns(), l = source.lines();
   const auto [west, east] = std::minmax({g[0], g[0] + g[1] * c, g[0] + g[2] * l, g[0] + g[1] * c + g[2] * l});
@@ -288,8 +288,7 @@ int RasterSource::lines() const { return dataset_->GetRasterYSize(); }
 
 const OGRSpatialReference* RasterSource::srs() const {
   const OGRSpatialReference* srs = dataset_->GetSpatialRef();
-  const bool places_nothing = srs == nullptr || srs->IsEmpty() || (srs->IsVertical() != 0 && srs->IsCompound() == 0);
-  return places_nothing ? nullptr : srs;
+  return places_nothing(srs) ? nullptr : srs;
 }
 
 bool RasterSource::in_metres() const {
@@ -360,8 +359,9 @@ void RasterSource::refuse_infinite(const std::vector<double>& values, int column
         {fmt::format("{}: column {}, line {} (x {:.2f}, y {:.2f}) is infinite", file_.string(), c + 1, l + 1,
                      g[0] + g[1] * (c + 0.5) + g[2] * (l + 0.5), g[3] + g[4] * (c + 0.5) + g[5] * (l + 0.5)),
          "no elevation or thickness is",
-         "Make such cells nodata: gdal_calc.py -A in.tif --calc=\"where(isfinite(A),A,-9999)\" "
-         "--NoDataValue=-9999 --outfile=out.tif"});
+         fmt::format("Make such cells nodata: gdal_calc.py -A {} --calc=\"where(isfinite(A),A,-9999)\" "
+                     "--NoDataValue=-9999 --outfile={}",
+                     file_.string(), mended(file_, "_finite"))});
   }
 }
 
@@ -381,7 +381,8 @@ std::vector<double> Warped::read(int column, int line, int columns, int lines) {
                                                         lines, GDT_Float64, 0, 0, nullptr) == CE_None;
   if (const auto fault = static_cast<PlainCells&>(*cells_).take_fault()) std::rethrow_exception(fault);
   if (!read || errors.failed())
-    throw DataError({"a raster cannot be reprojected", errors.text(), "Reproject it beforehand: gdalwarp -t_srs"});
+    throw DataError({static_cast<PlainCells&>(*cells_).file().string() + ": cannot be reprojected", errors.text(),
+                     "Reproject it beforehand: gdalwarp -t_srs EPSG:<code>"});
   return values;
 }
 

@@ -37,8 +37,7 @@ Dataset open_vector(const fs::path& file) {
   const bool plain = file.is_absolute() && !file.string().starts_with("/vsi");
   if (!dataset && plain && !fs::exists(file))
     throw DataError({file.string() + ": no such file", "", "Check the path in the recipe"});
-  throw DataError({file.string() + ": not a vector file that can be read", dataset ? "no layer in it" : errors.text(),
-                   "Look at it: ogrinfo " + file.string()});
+  throw DataError(no_dataset(file, "a vector file", dataset ? "no layer in it" : errors.text(), "ogrinfo"));
 }
 
 /// The layer that a source names; where it names none, that called `usual` if there is one, else the first.
@@ -79,12 +78,12 @@ std::string as_in(OGRLayer& layer, const std::string& where) {
 }
 
 /// The way from a layer's CRS to another; none where one of them is not named.
-Transformation transformation_to(OGRLayer& layer, const std::string& crs_wkt) {
+Transformation transformation_to(OGRLayer& layer, const std::string& crs_wkt, const fs::path& file) {
   const OGRSpatialReference* own = layer.GetSpatialRef();
   if (crs_wkt.empty() || own == nullptr || own->IsEmpty() || own->IsLocal() != 0) return nullptr;
   OGRSpatialReference from(*own);
   from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return transformation(from, spatial_reference(crs_wkt));
+  return transformation(from, spatial_reference(crs_wkt), file.string());
 }
 
 }  // namespace
@@ -108,7 +107,7 @@ VectorLayer::VectorLayer(const fs::path& text, const std::string& crs_wkt, const
     throw DataError({fmt::format("{}: the condition {} cannot be understood", file().string(), where()),
                      opened_->errors.text(),
                      "Write it with the names of attributes: id = 12, or state = 'active'; ogrinfo -so lists them"});
-  opened_->transformation = transformation_to(layer(), crs_wkt);
+  opened_->transformation = transformation_to(layer(), crs_wkt, file());
 }
 
 VectorLayer::~VectorLayer() = default;
@@ -252,8 +251,7 @@ PointLayer read_point_layer(const fs::path& file, const ZAttributes& attributes)
   const gdal::QuietErrors errors;
   const gdal::Dataset dataset = open(file, GDAL_OF_VECTOR);
   if (!dataset || dataset->GetLayerCount() == 0)
-    throw DataError(
-        {file.string() + ": cannot be read as points", errors.text(), "Look at it: ogrinfo " + file.string()});
+    throw DataError(gdal::no_dataset(file, "points", errors.text(), "ogrinfo"));
   OGRLayer& layer = *dataset->GetLayer(0);
   PointLayer points;
   points.crs_wkt = gdal::horizontal_wkt(layer.GetSpatialRef());
@@ -271,6 +269,10 @@ PointLayer read_point_layer(const fs::path& file, const ZAttributes& attributes)
                        first < 0 ? "neither its geometry nor an attribute z, elevation or height holds one"
                                  : "its attribute " + name_of(fields, first) + " is empty",
                        "Rename the attribute: ogr2ogr -sql \"SELECT *, <column> AS z FROM <layer>\" out.gpkg in.gpkg"});
+    if (!in_geometry && !gdal::is_numeric(*feature, field))
+      throw DataError({fmt::format("{}: point {}: {} = \"{}\"", file.string(), feature->GetFID(),
+                                   name_of(fields, field), as_utf8(feature->GetFieldAsString(field))),
+                       "an elevation is a number", "Write it with a point for its decimals"});
     points.x.push_back(point.getX());
     points.y.push_back(point.getY());
     points.z.push_back(in_geometry ? point.getZ() : feature->GetFieldAsDouble(field));

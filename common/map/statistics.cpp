@@ -3,6 +3,7 @@
 #include "common/map/statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -12,7 +13,13 @@
 
 namespace talus {
 
-std::string grouped(double value) { return grouped(fmt::format("{:.0f}", value), ","); }
+std::string grouped(double value) { return grouped(fixed(value, 0), ","); }
+
+std::string fixed(double value, int decimals) {
+  const bool whole = value == std::round(value);
+  return whole || std::abs(value) >= std::pow(10.0, 1 - decimals) ? fmt::format("{:.{}f}", value, decimals)
+                                                                  : fmt::format("{:.2g}", value);
+}
 
 std::string grouped(std::string number, const char* between) {
   const std::size_t start = number.starts_with('-') ? 1 : 0;

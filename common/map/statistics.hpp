@@ -27,6 +27,8 @@ class Sum {
 
 /// Rounded to a whole number, in groups of three: "36,003,420".
 std::string grouped(double value);
+/// A number with so many decimals, or with more where less than two digits would be left of it.
+std::string fixed(double value, int decimals);
 /// A written number with `between` between its groups.
 std::string grouped(std::string number, const char* between);
 

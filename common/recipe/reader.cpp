@@ -78,6 +78,11 @@ class Reader : public Visitor {
     const auto* node = walk_.find(key);
     std::string text = value.string();
     if (node != nullptr && !read_plain(*node, key, text, "a path in quotes")) return;
+    if (node != nullptr && std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < ' '; })) {
+      walk_.add(*node, key, fmt::format("{} holds a control character", toml_text(text)),
+                "A backslash in double quotes begins an escape (\\b, \\t, \\n): write / in paths, or single quotes");
+      return;
+    }
     VectorSource source = vector_source(text);
     const std::string given = source.file.string();
     std::vector<std::string> unset;

@@ -81,8 +81,10 @@ toml::table toml_of(std::string_view text, const std::string& shown) {
       throw RecipeError(Fault{place(shown, error.source()) + ": the recipe is not UTF-8",
                               wide.empty() ? "it may be CP1252 (Western European)" : fmt::format("it is {}", wide),
                               mend_of_encoding(encoding, shown)});
+    const bool escape = error.description().find("escape") != std::string_view::npos;
     throw RecipeError(Fault{place(shown, error.source()) + ": this is not TOML", std::string(error.description()),
-                            "Mend the line; the format is described on https://toml.io"});
+                            escape ? "A backslash in double quotes begins an escape: write / in paths, or single quotes"
+                                   : "Mend the line; the format is described on https://toml.io"});
   }
 }
 

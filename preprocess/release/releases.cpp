@@ -48,7 +48,8 @@ std::vector<std::string> as_lines(const std::string& name, const Volumes& v) {
                       grouped(v.volume_if_normal), 100 * (v.volume_if_normal / v.volume - 1)),
           fmt::format("  area {} m2 on the map, {} m2 along the bed, {} cells", grouped(v.projected_area),
                       grouped(v.true_area), v.cells),
-          fmt::format("  thickness at most {:.2f} m vertical, {:.2f} m slope-normal", v.max_vertical, v.max_normal)};
+          fmt::format("  thickness at most {} m vertical, {} m slope-normal", fixed(v.max_vertical, 2),
+                      fixed(v.max_normal, 2))};
 }
 
 std::vector<std::pair<std::string, std::string>> as_facts(const Volumes& v) {
@@ -129,8 +130,9 @@ void warn_of_holes(const Raster& thickness, const std::filesystem::path& file) {
       {{"cells", static_cast<double>(cells), "1"}, {"missing_volume", missing, "m3"}});
 }
 
-Raster from_raster(const ReleaseOptions& options, const MapGrid& grid) {
+Raster from_raster(const ReleaseOptions& options, const MapGrid& grid, const std::filesystem::path& model) {
   const Raster thickness = read_raster(options.thickness_raster);
+  require_comparable_crs(thickness.grid.crs_wkt, options.thickness_raster, grid.crs_wkt, model.string());
   refuse_negative(thickness, options.thickness_raster);
   warn_of_holes(thickness, options.thickness_raster);
   return thickness_onto_grid(thickness, grid, options.thickness_raster);
@@ -139,7 +141,7 @@ Raster from_raster(const ReleaseOptions& options, const MapGrid& grid) {
 double thickness_of(const MapPolygon& polygon, std::size_t number, const ReleaseOptions& options) {
   if (options.thickness > 0) return options.thickness;
   if (options.volume > 0) return 1;
-  const std::string place = fmt::format("{}: polygon {}", options.polygons.string(), number);
+  const std::string file = options.polygons.string(), place = fmt::format("{}: polygon {}", file, number);
   std::string others;
   for (const auto& [name, value] : polygon.numbers) {
     if (name != options.attribute) {
@@ -151,6 +153,11 @@ double thickness_of(const MapPolygon& polygon, std::size_t number, const Release
                        "Mend the attribute, or give thickness_m in the recipe"});
     }
   }
+  for (const TextField& text :
+       text_fields(options.polygons, [&](std::string_view n) { return n == options.attribute; }))
+    throw DataError({fmt::format("{}: feature {}: {} = \"{}\"", file, text.feature, text.field, text.text),
+                     "it is a text and no number, and a thickness is wanted",
+                     "Write it as a number with a point for its decimals, or give thickness_m"});
   throw DataError({fmt::format("{}: no number \"{}\" among its attributes ({})", place, options.attribute,
                                others.empty() ? "it has none" : others),
                    "its thickness is not known",
@@ -186,10 +193,11 @@ void refuse_release_on_nodata(const Raster& thickness, const Raster& bed, const 
 
 }  // namespace
 
-Release read_release(const ReleaseOptions& options, std::size_t item, const Raster& bed) {
+Release read_release(const ReleaseOptions& options, std::size_t item, const Raster& bed,
+                     const std::filesystem::path& model) {
   const auto& file = options.polygons.empty() ? options.thickness_raster : options.polygons;
   Release release{options.name.empty() ? fmt::format("release-{}", item + 1) : options.name,
-                  options.polygons.empty() ? from_raster(options, bed.grid) : from_polygons(options, bed.grid)};
+                  options.polygons.empty() ? from_raster(options, bed.grid, model) : from_polygons(options, bed.grid)};
   if (std::ranges::none_of(release.thickness.values, [](double t) { return t > 0; }))
     throw DataError({file.string() + ": its thickness is 0 everywhere", "the source is empty",
                      "Check the values with gdalinfo -stats or ogrinfo -al"});

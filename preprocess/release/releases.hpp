@@ -40,6 +40,7 @@ struct Release {
 /// Read a release and bring it onto the grid of `bed`, its volume kept: a cell that a polygon covers in part gets that
 /// part of the thickness. A slope-normal thickness t_n becomes vertical, t_n / cos(slope of the bed). Throws DataError:
 /// negative or no thickness, no such attribute, polygons that are not valid or lie outside, release on nodata.
-Release read_release(const ReleaseOptions& options, std::size_t item, const Raster& bed);
+Release read_release(const ReleaseOptions& options, std::size_t item, const Raster& bed,
+                     const std::filesystem::path& model);
 
 }  // namespace talus::preprocess

@@ -69,7 +69,8 @@ void lay_erodible(const Options& options, SceneRasters& scene) {
   for (std::size_t e = 0; e < options.erodible.size(); ++e) {
     ErodibleOptions o = options.erodible[e];
     if (o.name.empty()) o.name = fmt::format("erodible-{}", e + 1);
-    layers.push_back(o.lowering ? lowered_outside_source(scene, o.name) : read_release(o, e, scene.bed));
+    layers.push_back(o.lowering ? lowered_outside_source(scene, o.name)
+                                : read_release(o, e, scene.bed, options.first_dem()));
   }
   for (const Release& layer : layers)
     for (std::size_t c = 0; c < scene.bed.values.size(); ++c) scene.bed.values[c] -= layer.thickness.values[c];
@@ -88,7 +89,7 @@ std::vector<std::pair<std::string, Raster>> read_bed(const Options& options, con
                                              .vertical_unit = {},
                                              .or_else = dem_reading("", VerticalUnit::declared).or_else,
                                              .are_lengths = false});
-    require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, "the working grid");
+    require_comparable_crs(values.crs_wkt(), values.file, grid.crs_wkt, options.first_dem().string());
     log_resampling(values, grid);
     Raster raster = onto_grid(values, grid);
     require_data(raster, file);

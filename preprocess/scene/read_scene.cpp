@@ -124,7 +124,7 @@ SceneRasters from_releases(const Options& options) {
   SceneRasters scene{bed, std::move(bed), {}};
   scene.heights = base.heights();
   for (std::size_t i = 0; i < options.release.size(); ++i) {
-    Release release = read_release(options.release[i], i, scene.bed);
+    Release release = read_release(options.release[i], i, scene.bed, base.file);
     for (std::size_t c = 0; c < scene.before.values.size(); ++c) scene.before.values[c] += release.thickness.values[c];
     scene.releases.push_back(std::move(release));
   }

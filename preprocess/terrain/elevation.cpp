@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/gis/ascii_grid.hpp"
 #include "common/gis/resampling.hpp"
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
@@ -224,9 +225,15 @@ void require_comparable_crs(const std::string& crs, const std::filesystem::path&
   if (crs.empty() == other_crs.empty()) return;
   const std::string bare = crs.empty() ? file.string() : other_file, named = crs.empty() ? other_file : file.string();
   const std::string name = crs_name(crs.empty() ? other_crs : crs);
+  // What has no code is taken out of the other file by the shell, and an ASCII grid has its CRS in a file beside.
+  const bool by_code = name.find(':') != std::string::npos && name.find(' ') == std::string::npos;
+  const std::string mend = gdal::begins_as_ascii_grid(bare)
+                               ? fmt::format("gdalsrsinfo -o wkt1 {} | sed '/^$/d' > {}", by_code ? name : named,
+                                             std::filesystem::path(bare).replace_extension(".prj").string())
+                               : fmt::format("gdal_edit.py -a_srs {} {}",
+                                             by_code ? name : fmt::format("\"$(gdalsrsinfo -o wkt {})\"", named), bare);
   throw DataError({fmt::format("{}: has no CRS, while that of {} is {}", bare, named, name),
-                   "they cannot be laid over one another",
-                   fmt::format("If it is the same, say so: gdal_edit.py -a_srs {} {}", name, bare)});
+                   "they cannot be laid over one another", "If it is the same, say so: " + mend});
 }
 
 }  // namespace talus::preprocess
