@@ -89,6 +89,7 @@ class Walk {
   std::vector<Fault>& out_;
   std::vector<Placed> faults_;
   std::vector<Unknown> unknown_;
+  std::size_t left_out_ = 0;  // faults beyond the first of either list
   std::vector<Frame> frames_;
   std::vector<List> lists_;
   std::set<std::pair<std::string, std::string>> all_known_;  // (key, table name): "it belongs in ..."

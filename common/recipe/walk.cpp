@@ -14,6 +14,9 @@
 namespace talus::recipe {
 namespace {
 
+/// A recipe with more faults than this is another file, or was broken by a program: the rest is counted.
+constexpr std::size_t most_faults = 50;
+
 bool contains(const std::vector<std::string>& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -67,9 +70,13 @@ void Walk::pop_table() {
   const Frame& frame = frames_.back();
   for (const auto& key : frame.known) all_known_.emplace(key, frame.name);
   if (frame.table != nullptr)
-    for (const auto& [key, node] : *frame.table)
-      if (!contains(frame.known, key.str()))
+    for (const auto& [key, node] : *frame.table) {
+      if (contains(frame.known, key.str())) continue;
+      if (unknown_.size() < most_faults)
         unknown_.push_back({std::string(key.str()), frame.name, frame.path, key.source(), frame.known});
+      else
+        ++left_out_;
+    }
   frames_.pop_back();
 }
 
@@ -99,6 +106,10 @@ std::string_view Walk::advice_on_word(std::string_view key, std::string_view wor
 }
 
 bool Walk::add(const toml::node& node, std::string_view key, const std::string& why, const std::string& mend) {
+  if (faults_.size() >= most_faults) {
+    ++left_out_;
+    return false;
+  }
   const std::string& table = frames_.back().name;
   const std::string name = table.empty() ? std::string(key) : fmt::format("{} {}", table, key);
   const std::string value = value_text(node);
@@ -135,7 +146,13 @@ void Walk::sort_and_hand_over() {
   std::stable_sort(faults_.begin(), faults_.end(), [](const Placed& a, const Placed& b) {
     return std::tie(a.at.line, a.at.column) < std::tie(b.at.line, b.at.column);
   });
+  if (faults_.size() > most_faults) {
+    left_out_ += faults_.size() - most_faults;
+    faults_.erase(faults_.begin() + most_faults, faults_.end());
+  }
   for (auto& placed : faults_) out_.push_back(std::move(placed.fault));
+  if (left_out_ > 0)
+    out_.push_back({fmt::format("{}: {} more faults", shown_, left_out_), "", "Mend those above first"});
 }
 
 }  // namespace talus::recipe

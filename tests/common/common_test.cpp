@@ -22,6 +22,16 @@ TEST(Error, text_has_what_why_and_mend_and_kinds_their_exit_codes_and_all_faults
   EXPECT_STREQ(two.what(), "first\nsecond (why)");
 }
 
+TEST(Error, of_many_faults_says_the_first_and_counts_the_rest) {
+  std::vector<Fault> many(100'000, Fault{"row", "no number", ""});
+  many[0].what = "first";
+  const DataError error(many);
+  EXPECT_EQ(error.faults().size(), 51u);
+  EXPECT_EQ(error.faults().front().what, "first");
+  EXPECT_EQ(to_string(error.faults().back()), "99950 more faults. Mend those above first");
+  EXPECT_LT(std::string(error.what()).size(), 2000u);
+}
+
 namespace {
 
 TEST(WholeText, without_end_is_given_up) {

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cstdlib>
+#include <functional>
 
 #include "common/recipe/gone_keys.hpp"
 #include "common/recipe/paths.hpp"
@@ -102,6 +104,31 @@ TEST_F(RecipeFile, reports_all_faults_at_once_in_the_order_of_the_file) {
       "r.toml:3:1: unknown key \"densty_kg_m3\" in [solve]. Did you mean \"density_kg_m3\"?\n"
       "r.toml:4:9: [solve] steps = 0 (out of range). It must be 1 to 1000\n"
       "r.toml:6:22: [solve.material] friction_angle_deg = 90 (out of range). It must be >= 0 and < 90");
+}
+
+TEST_F(RecipeFile, says_the_first_fifty_of_many_faults_and_counts_the_rest) {
+  const std::size_t count = 100'000;
+  const auto lines = [&](const std::string& head, const std::function<std::string(std::size_t)>& line) {
+    std::string text = head;
+    for (std::size_t i = 0; i < count; ++i) text += line(i);
+    return text;
+  };
+  const auto key = [](std::size_t i) { return "key_" + std::to_string(i) + " = 1\n"; };
+  for (const std::string& text : {
+           lines("[solve]\n", key),
+           lines("[solve.material]\n", key),
+           lines("[[solve.release]]\n", key),
+           lines("", [](std::size_t) { return std::string("[[solve.release]]\nthickness_m = -1\n"); }),
+           lines("", [](std::size_t) { return std::string("[[solve.release]]\nnmae = 1\n"); }),
+           lines("", [](std::size_t) { return std::string("[[solve.release]]\nname = 1\nnmae = 1\n"); }),
+           lines("[solve]\ntimes_s = [", [](std::size_t) { return std::string("true, "); }) + "]\n",
+       }) {
+    const std::string said = faults(text);
+    EXPECT_LE(std::count(said.begin(), said.end(), '\n'), 51) << said.substr(0, 300);
+    EXPECT_GT(said.size(), 20u) << text.substr(0, 100);
+  }
+  const std::string said = faults(lines("[solve]\n", key));
+  EXPECT_NE(said.find("r.toml: 99950 more faults. Mend those above first"), std::string::npos) << said.substr(5000);
 }
 
 TEST_F(RecipeFile, refuses_wrong_types_and_numbers_that_are_not_finite) {
