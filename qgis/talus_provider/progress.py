@@ -7,7 +7,7 @@ import re
 SHARES = {"preprocess": (0.0, 5.0), "solve": (5.0, 92.0), "postprocess": (92.0, 100.0)}
 
 _STAGE = re.compile(r"^(preprocess|solve|postprocess): ")
-_TIME = re.compile(r"^t (\d[\d.e+-]*)/(\d[\d.e+-]*) s\b")
+_TIME = re.compile(r"^\d+ %  eta .*?  t (\d[\d.e+-]*)/(\d[\d.e+-]*) s\b")
 _COUNT = re.compile(r"(\d+)/(\d+)")
 
 

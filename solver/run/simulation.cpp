@@ -132,7 +132,8 @@ void Simulation::pass_whole_state(bool checkpoint_due) {
 
 void Simulation::pass_batch(const BatchReport& batch) {
   if (progress_ && progress_->due())
-    progress_->update(progress_line(batch.clock, {loop_.end_time(), loop_.mass_error(), timer_.seconds()}));
+    progress_->update(progress_line(batch.clock, {loop_.end_time(), loop_.mass_error(), timer_.seconds(),
+                                                  loop_.options().stop_kinetic_fraction > 0}));
 }
 
 void Simulation::stop() {

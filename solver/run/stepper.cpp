@@ -183,9 +183,11 @@ void StepWatch::warn_of_short_steps(const Clock& clock, double step) {
 
 std::string progress_line(const Clock& clock, const RunProgress& progress) {
   const double done = clock.time / progress.end_time;
-  return fmt::format("t {:.2f}/{:g} s  step {}  dt {:.3g} s  v_max {:.1f} m/s  mass error {:.1e}  eta {}", clock.time,
-                     progress.end_time, clock.step, clock.step_size, positive_from_bits(clock.control.speed_bits),
-                     progress.mass_error, done > 0 ? duration(progress.wall_time * (1 - done) / done) : "?");
+  const std::string left = done > 0 ? duration(progress.wall_time * (1 - done) / done) : "?";
+  return fmt::format("{:.0f} %  eta {}{}  t {:.2f}/{:g} s  v_max {:.1f} m/s  step {}  dt {:.3g} s  mass error {:.1e}",
+                     std::floor(100 * done), progress.may_rest && done > 0 ? "at most " : "", left, clock.time,
+                     progress.end_time, positive_from_bits(clock.control.speed_bits), clock.step, clock.step_size,
+                     progress.mass_error);
 }
 
 void refuse_lost_point(const Clock& clock, const ParticleState& s, const MapGrid& map, double cfl) {

@@ -88,9 +88,11 @@ struct RunProgress {
   double end_time;    ///< [s]
   double mass_error;  ///< volume in the domain and out of it over volume released, less one [-]
   double wall_time;   ///< since the start [s]
+  bool may_rest;      ///< the run ends where the mass comes to rest, which may be before end_time
 };
 
-/// One line: time, step, step size, largest speed, error of mass, wall time still to come.
+/// One line, what matters first: percent of the time, wall time still to come (to end_time; "at most" where the run may
+/// end at rest), time, largest speed, step, step size, error of mass.
 std::string progress_line(const Clock& clock, const RunProgress& progress);
 
 /// This function throws the NumericalError that names the point whose state is not a number, or which is faster than

@@ -45,9 +45,9 @@ class ProgressTest(unittest.TestCase):
             "preprocess: domain.vdb is missing",
             "release  36000 m3",
             "solve: run.h5 is missing",
-            "t 0.00/120 s  step 0  dt 0.01 s  v_max 0.0 m/s  mass error 0.0e+00  eta ?",
-            "t 60.00/120 s  step 1240  dt 0.010 s  v_max 38.0 m/s  mass error 2e-15  eta 4 min",
-            "t 30.00/120 s  a line out of order",
+            "0 %  eta ?  t 0.00/120 s  v_max 0.0 m/s  step 0  dt 0.01 s  mass error 0.0e+00",
+            "50 %  eta at most 4 min  t 60.00/120 s  v_max 38.0 m/s  step 1240  dt 0.010 s  mass error 2e-15",
+            "25 %  eta 1 s  t 30.00/120 s  a line out of order",
             "postprocess: score.json is missing",
             "survey 100/200 drawn within its error",
         ]:
@@ -57,7 +57,7 @@ class ProgressTest(unittest.TestCase):
 
     def test_tells_progress_from_what_people_read(self):
         progress = Progress()
-        self.assertTrue(progress.read("t 1.2e-03/5e+01 s  step 1"))
+        self.assertTrue(progress.read("0 %  eta ?  t 1.2e-03/5e+01 s  step 1"))
         self.assertFalse(progress.read("thickness at rest 3/4"))
         self.assertFalse(progress.read("solve: run.h5 is up to date"))
         self.assertEqual(progress.percent, 92)

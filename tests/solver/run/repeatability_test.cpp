@@ -252,16 +252,19 @@ TEST(Sanity, bounds_neither_energy_nor_speed_where_loads_or_walls_do_work) {
   EXPECT_NE(said(found).find("fall without loss unknown"), std::string::npos);
 }
 
-TEST(Progress, line_has_physics_first_and_the_time_to_come_last) {
+TEST(Progress, line_has_percent_and_the_time_to_come_first_and_the_mass_error_last) {
   Clock clock;
   clock.time = 30;
   clock.step = 1240;
   clock.step_size = 0.01;
   atomic_max_positive(&clock.control.speed_bits, 38.0F);
-  EXPECT_EQ(progress_line(clock, {.end_time = 120, .mass_error = 2e-15, .wall_time = 60}),
-            "t 30.00/120 s  step 1240  dt 0.01 s  v_max 38.0 m/s  mass error 2.0e-15  eta 3 min");
+  RunProgress progress{.end_time = 120, .mass_error = 2e-15, .wall_time = 60, .may_rest = false};
+  EXPECT_EQ(progress_line(clock, progress),
+            "25 %  eta 3 min  t 30.00/120 s  v_max 38.0 m/s  step 1240  dt 0.01 s  mass error 2.0e-15");
+  progress.may_rest = true;
+  EXPECT_EQ(progress_line(clock, progress).find("25 %  eta at most 3 min  t 30.00/120 s  "), 0u);
   clock.time = 0;
-  EXPECT_NE(progress_line(clock, {.end_time = 120, .mass_error = 0, .wall_time = 60}).find("eta ?"), std::string::npos);
+  EXPECT_EQ(progress_line(clock, progress).find("0 %  eta ?  t 0.00/120 s  "), 0u);
 }
 
 TEST(Progress, lost_point_is_named_with_its_place) {
