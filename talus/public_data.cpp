@@ -3,13 +3,14 @@
 #include "talus/commands.hpp"
 
 #include <fmt/format.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -179,8 +180,13 @@ bool run_to_end(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  pid_t process = -1;
-  if (::posix_spawn(&process, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) return false;
+  const pid_t parent = ::getpid(), process = ::fork();
+  if (process < 0) return false;
+  if (process == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a program must not outlive this one, even where it is killed
+    if (::getppid() == parent) ::execve(arguments[0], arguments.data(), environ);
+    ::_exit(127);
+  }
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }

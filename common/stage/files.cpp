@@ -233,6 +233,8 @@ Fault write_fault(const fs::path& path, const std::string& reason) {
   if (full)
     return {what, "the disk is full" + (reason.empty() ? "" : ": " + reason),
             "Free some space, or write elsewhere with --out DIR"};
+  if (reason.find(reason_of(EFBIG)) != std::string::npos)
+    return {what, "it is longer than this process may write: " + reason, "Raise the limit on files (ulimit -f)"};
   return {what, reason, "Check the folder's permissions and free space, or write elsewhere with --out DIR"};
 }
 

@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include <sys/resource.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -46,9 +47,13 @@ void say(std::initializer_list<const char*> parts) {
     if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) return;  // nobody is left to tell
 }
 
-[[noreturn]] void end_at_once(ExitCode code) {
+void remove_doomed() {
   for (Slot& slot : doomed)
     if (slot.state.load() == Slot::filled) ::unlink(slot.path.data());
+}
+
+[[noreturn]] void end_at_once(ExitCode code) {
+  remove_doomed();
   ::_exit(static_cast<int>(code));
 }
 
@@ -59,6 +64,16 @@ extern "C" void talus_on_signal(int) {
     say({"\n", program_name.load(), ": interrupted; ", saved, " (a second Ctrl-C ends it at once)\n"});
   else
     ::setitimer(ITIMER_REAL, &grace_left, nullptr);
+}
+
+/// The limit of processor time comes near; the system repeats the signal every second until it kills the process.
+extern "C" void talus_on_processor_time(int) {
+  static volatile std::sig_atomic_t times = 0;
+  times = times + 1;
+  if (times > 2) end_at_once(ExitCode::interrupted);
+  if (times > 1) return;
+  say({"\n", program_name.load(), ": the limit of processor time comes near; raise it (ulimit -t)\n"});
+  if (signals_seen == 0) talus_on_signal(SIGXCPU);
 }
 
 extern "C" void talus_on_end_of_grace(int) {
@@ -82,6 +97,19 @@ std::string whole_name(const std::filesystem::path& path) {
   return std::filesystem::absolute(path, ignored).string();
 }
 
+/// `ulimit -t` sets the time of the signal and that of the kill alike: the signal comes earlier, so that there is time
+/// to save what there is.
+void hear_of_processor_time() {
+  constexpr rlim_t ahead = 3;  // s: a signal each second, the last of which ends the process
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  if (limit.rlim_cur == limit.rlim_max && limit.rlim_max > ahead) {
+    limit.rlim_cur = limit.rlim_max - ahead;
+    ::setrlimit(RLIMIT_CPU, &limit);
+  }
+  handle(SIGXCPU, talus_on_processor_time);
+}
+
 bool is_ignored(int number) {
   struct sigaction now {};
   return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
@@ -96,6 +124,11 @@ static_assert(std::atomic<const WhileReading*>::is_always_lock_free);
 extern "C" void talus_on_crash(int signal) {
   const WhileReading* reading = read_here != nullptr ? read_here : read_anywhere.load();
   if (reading == nullptr) {
+    remove_doomed();
+    say({crashing_program.data(), signal == SIGSEGV ? ": crashed. Where 'ulimit -s' is small, raise it; else this is a "
+                                                      "bug: please report it, with the recipe and the version\n"
+                                                    : ": crashed (this is a bug). Please report it, with the recipe "
+                                                      "and the version\n"});
     ::raise(signal);  // SA_RESETHAND: the default action, once this handler has returned
     return;
   }
@@ -123,6 +156,8 @@ void watch_for_interrupts(const std::string& program, double grace) {
   handle(SIGALRM, talus_on_end_of_grace);
   handle(SIGINT, talus_on_signal);
   handle(SIGTERM, talus_on_signal);
+  hear_of_processor_time();
+  handle(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` then fails as one on a full disk does
   if (!is_ignored(SIGHUP)) handle(SIGHUP, talus_on_signal);  // nohup
 }
 
