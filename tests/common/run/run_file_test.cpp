@@ -247,7 +247,7 @@ TEST_F(RunFile, reports_a_write_that_the_system_refuses) {
     writer.finish(some_maps(), some_history, some_summary());
   });
   EXPECT_TRUE(test::holds(fault, {"./run.h5: cannot be written"})) << "as the user knows it";
-  EXPECT_TRUE(test::holds(fault, {"File too large", "--out"}));
+  EXPECT_TRUE(test::holds(fault, {"File too large", "ulimit -f"}));
   EXPECT_EQ(scratch.files(), 0U) << "nothing half-written may stay";
 }
 
