@@ -66,8 +66,8 @@ OGRSpatialReference horizontal(const OGRSpatialReference& srs);
 /// WKT2 of the horizontal part of a CRS (heights are metres in all of this project); "" for none.
 std::string horizontal_wkt(const OGRSpatialReference* srs);
 
-/// Whether a CRS (null: none) says nothing of places: it is empty, vertical alone, or local coordinates in metres, which
-/// are anybody's.
+/// Whether a CRS (null: none) says nothing of places: it is empty, vertical alone, or local coordinates in metres,
+/// which are anybody's.
 bool places_nothing(const OGRSpatialReference* srs);
 
 /// Short name for messages: "EPSG:32149", else the CRS's own name.
