@@ -102,8 +102,7 @@ void FrameStore::append_to(RunWriter& run, std::int64_t number, const MapGrid& g
                      fmt::format("this is the run {}", run_id_), "Run talus-solve again without --restart"});
   const PointFrame f = points_in(frame);
   if (!f.id.empty()) run.append(f);
-  run.append_thickness(f.time, grid,
-                       read_all<double>(frame, "/thickness", h5::shape_of(grid), h5::thickness_or_none));
+  run.append_thickness(f.time, grid, read_all<double>(frame, "/thickness", h5::shape_of(grid), h5::thickness_or_none));
 }
 
 PointFrame point_frame(const Scene& scene, const SolveOptions& options, double time, const ParticleState& s) {
