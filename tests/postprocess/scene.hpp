@@ -38,6 +38,17 @@ inline std::vector<double> block(const MapGrid& grid, int from, int to, int bott
   return values;
 }
 
+/// Two records of a column of each kind.
+inline RunHistory small_history() {
+  return {{{"time_s", "s", "", "", {0, 1}},
+           {"kinetic_J", "J", "", "", {5, 6}},
+           {"gauge_a_thickness_m", "m", "thickness", "gauge a", {7, 8}},
+           {"volume_m3", "m3", "", "", {7, 8}},
+           {"speed_max_m_s", "m s-1", "", "", {7, 8}},
+           {"momentum_x_kg_m_s", "kg m s-1", "", "", {-7, 8}},
+           {"newton_iterations", "1", "", "", {7, 8}}}};
+}
+
 /// Release: columns 3-6, rows 10-19, 6 m. Deposit: columns 25-34, rows 10-19, 2.4 m with a thicker core. The two
 /// southernmost rows lie outside the domain.
 inline Run small_run() {

@@ -66,13 +66,7 @@ RunSummary some_summary() {
   return summary;
 }
 
-const RunHistory some_history{{{"time_s", "s", "", "", {0, 1}},
-                               {"kinetic_J", "J", "", "", {5, 6}},
-                               {"gauge_a_thickness_m", "m", "thickness", "gauge a", {7, 8}},
-                               {"volume_m3", "m3", "", "", {7, 8}},
-                               {"speed_max_m_s", "m s-1", "", "", {7, 8}},
-                               {"momentum_x_kg_m_s", "kg m s-1", "", "", {-7, 8}},
-                               {"newton_iterations", "1", "", "", {7, 8}}}};
+const RunHistory some_history = test::small_history();
 
 void write_some_run(const fs::path& file) {
   RunWriter writer(file);

@@ -23,13 +23,7 @@ Run whole_run() {
   Run run = test::small_run();
   run.maps.eroded_depth = run.maps.peak_thickness;
   run.maps.deposit_of = {{"a", run.maps.deposit_thickness}, {"b", run.maps.deposit_thickness}};
-  run.history = {{{"time_s", "s", "", "", {0, 1}},
-                  {"kinetic_J", "J", "", "", {5, 6}},
-                  {"gauge_a_thickness_m", "m", "thickness", "gauge a", {7, 8}},
-                  {"volume_m3", "m3", "", "", {7, 8}},
-                  {"speed_max_m_s", "m s-1", "", "", {7, 8}},
-                  {"momentum_x_kg_m_s", "kg m s-1", "", "", {-7, 8}},
-                  {"newton_iterations", "1", "", "", {7, 8}}}};
+  run.history = test::small_history();
   run.summary.release_density = {2000, 1800};
   run.summary.profile = {{"scatter", 0.5}};
   return run;
