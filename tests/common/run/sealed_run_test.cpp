@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "common/run/hdf5.hpp"
 #include "common/run/point_frames.hpp"
 #include "common/stage/checksum.hpp"
@@ -44,7 +46,7 @@ std::vector<std::string> numbers_in(const fs::path& file) {
       const h5::Id type(H5Aget_type(attribute), H5Tclose);
       std::string attribute_name(100, ' ');
       attribute_name.resize(static_cast<std::size_t>(H5Aget_name(attribute, 100, attribute_name.data())));
-      if (H5Tget_class(type) != H5T_STRING) all.push_back(path + " " + attribute_name);
+      if (H5Tget_class(type) != H5T_STRING) all.push_back(fmt::format("{} {}", path, attribute_name));
     }
     return 0;
   };
