@@ -131,6 +131,7 @@ void run_single(StageContext& context, const Options& options) {
     judge_outside(found, context.out);
     job.file = run_file(context, job.options);
     job.run = read_run(job.file);
+    job.options.settle_thresholds(job.run.maps.threshold);
     judge_run(context, job);
     if (job.options.survey.from_preprocess) judge_survey(context, found, job);
     warn_of_other_title(context, job.run.summary);

@@ -150,6 +150,7 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
     return run_in_time(context, flags.run, made, device);
   }
   refuse_flags_of_runs(flags);
+  options = with_map_threshold(std::move(options), *domain);
   context.check_only = context.check_only || flags.run.plan;
   return find_stability(context, options, device, *domain);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/map/statistics.hpp"
 #include "common/run/point_frames.hpp"
 
 namespace talus {
@@ -18,6 +19,15 @@ Motion read_motion(const std::filesystem::path& run_file, double faster_than) {
     motion.mean_speed.push_back(mean_speed);
   }
   return motion;
+}
+
+double covering_thickness(std::vector<double> release) {
+  constexpr double usual = 0.1, share = 0.05;  // [m], of the median
+  std::erase_if(release, [](double h) { return !(h > 0); });
+  const double least = share * median(release);  // NaN where nothing is released
+  if (!(least < usual)) return usual;
+  const double digit = std::pow(10, std::floor(std::log10(least)) - 1);
+  return std::round(least / digit) * digit;
 }
 
 double release_limit(const RunMaps& maps, double threshold) {

@@ -30,6 +30,11 @@ struct Place {
   double x = 0, y = 0, z = 0;
 };
 
+/// The thickness above which a cell counts as covered where the recipe names none, for footprint, deposit, run-out,
+/// arrival and ensembles alike [m]: 0.1 m, or 5 % of the median thickness of the released cells where that is less, to
+/// two digits. `release`: released thickness of the cells [m]; nothing released: 0.1 m.
+double covering_thickness(std::vector<double> release);
+
 /// A release cell is one thicker at the start than this: the deposit threshold, or a tenth of the thickest where the
 /// whole release is thin [m].
 double release_limit(const RunMaps& maps, double threshold);

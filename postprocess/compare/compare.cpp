@@ -270,7 +270,7 @@ std::string comparison_html(const ComparedRun& first, const ComparedRun& second,
 }
 
 void compare(StageContext& context, const fs::path& other) {
-  const auto options = context.recipe.read<Options>("postprocess");
+  auto options = context.recipe.read<Options>("postprocess");
   const fs::path there = fs::absolute(other).lexically_normal();
   const fs::path folder = there.filename().empty() ? there.parent_path() : there;
   if (folder == context.out)
@@ -278,6 +278,7 @@ void compare(StageContext& context, const fs::path& other) {
                             "Name the folder of another run"});
   ComparedRun first = read_compared(context.out, context.out / "run.h5"),
               second = read_compared(folder, folder / "run.h5");
+  options.settle_thresholds(first.run.maps.threshold);
   name_apart(first, second, context.out, folder);
   const std::string page = comparison_html(first, second, options.deposit_threshold);
   if (context.check_only) return;

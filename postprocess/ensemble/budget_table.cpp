@@ -44,7 +44,8 @@ class BudgetComparison {
   }
 
   BudgetTable table() {
-    BudgetTable table{.own = line_of(itself), .scores = {}, .lines = {}, .spreads = {}};
+    BudgetTable table{
+        .own = line_of(itself), .threshold = counts_.scene.threshold, .scores = {}, .lines = {}, .spreads = {}};
     for (const RowColumn& column : rows_.columns)
       if (column.kind == ColumnKind::score) table.scores.push_back(column.name);
     for (std::size_t k = 1; k < counts_.states.size(); ++k) {
@@ -216,8 +217,8 @@ std::string budget_words(const BudgetTable& table) {
   const auto name_of = [](const BudgetLine& line) { return fmt::format("{} ({})", line.row->title, line.name); };
   std::size_t width = 0;
   for (const BudgetLine& line : table.lines) width = std::max(width, name_of(line).size());
-  std::string text =
-      fmt::format("{:<{}}  {:<9} {:>12} {:>12}\n", "error budget", width, "kind", "elsewhere", "run-out");
+  std::string text = fmt::format("{:<{}}  {:<9} {:>12} {:>12}\n", "error budget", width, "kind", "elsewhere",
+                                 fmt::format("L > {:g} m", table.threshold));
   for (const BudgetLine& line : table.lines) {
     const std::string start = fmt::format("{:<{}}  {:<9}", name_of(line), width, kind_name(line.row->kind));
     if (line.state == MemberState::counted)

@@ -41,6 +41,7 @@ struct SpreadMap {
 
 struct BudgetTable {
   BudgetLine own;                   ///< the recipe itself
+  double threshold = 0;             ///< thickness to which run-outs are measured [m]
   std::vector<std::string> scores;  ///< names of scores against the survey, as in members.csv
   std::vector<BudgetLine> lines;    ///< the largest `elsewhere` first; then what failed, then what was left out
   std::vector<SpreadMap> spreads;   ///< over all members, over the physical rows, over the numerical ones

@@ -92,12 +92,34 @@ std::vector<double> on_survey(const Footprint& footprint, const MapGrid& from, c
   return share;
 }
 
-/// The thickness of a member's deposit on the survey's grid [m]; 0 where the run's map ends, as for a single run.
-std::vector<double> deposit_on_survey(const KeptThickness& deposit, const MapGrid& from, const MapGrid& to) {
-  std::vector<double> thickness = on_grid({from, deposit.thickness(from.count())}, to);
-  for (double& h : thickness)
-    if (std::isnan(h)) h = 0;
-  return thickness;
+/// The deposit of a member that was kept, on the survey's grid as that of a single run comes there.
+OnSurveyGrid deposit_on_survey(const KeptThickness& deposit, const MapGrid& from, const Survey& survey,
+                               const Options& options) {
+  RunMaps maps;
+  maps.grid = from;
+  maps.deposit_thickness = deposit.thickness(from.count());
+  maps.peak_thickness = maps.initial_thickness = std::vector<double>(from.count(), 0.0);
+  return bring_to_survey_grid(maps, survey, options);
+}
+
+/// How the names of members' scores end: a number that is not the one of score.json has another name.
+struct ScoreNames {
+  const char *flow = "", *deposit = "", *thickness = "";
+};
+
+/// Members keep cells above one threshold, whatever the survey could detect, and some the thickness of deposits; of a
+/// surveyed change, cells that were released are left out.
+ScoreNames names_of_scores(const EnsembleCounts& counts, const Survey& survey, const Options& options) {
+  double level = 0;
+  for (std::size_t cell = 0; cell < survey.measured.size(); ++cell) level = std::fmax(level, survey.error.level(cell));
+  const double threshold = counts.scene.threshold;
+  const bool seen = level <= threshold;
+  ScoreNames names;
+  if (threshold != options.footprint_threshold || (survey.footprint_is_change && !seen)) names.flow = "_by_cells";
+  const bool kept = std::ranges::any_of(counts.deposit_thickness, [](const KeptThickness& one) { return one.kept(); });
+  if (!kept && (threshold != options.deposit_threshold || !seen)) names.deposit = "_by_cells";
+  if (survey.deposit_is_change) names.deposit = names.thickness = "_outside_release";
+  return names;
 }
 
 /// The surveyed deposit where members' footprints can be compared with it.
@@ -113,23 +135,28 @@ std::vector<double> comparable_deposit(const Survey& survey, const EnsembleScene
 /// The scores of all members against one survey, one column each.
 class Scores {
  public:
-  Scores(const EnsembleCounts& counts, const Survey& survey, double deposit_threshold)
+  Scores(const EnsembleCounts& counts, const Survey& survey, const Options& options)
       : counts_(counts),
         survey_(survey),
         surveyed_deposit_(comparable_deposit(survey, counts.scene)),
-        deposit_threshold_(deposit_threshold),
+        options_(options),
         cell_area_(survey.grid.cell * survey.grid.cell) {
     const std::string footprint =
         fmt::format("footprint (thicker than {:g} m) against {}", counts.scene.threshold, survey.name);
     const std::string thickness = fmt::format("the deposit's thickness against {}", survey.name);
     const std::vector<double> none(counts.states.size(), nan);
-    flow_ = {{ColumnKind::score, "footprint_csi", "1", "critical success index of the " + footprint, none, {}},
-             {ColumnKind::score, "footprint_hit_rate", "1", "hit rate of the " + footprint, none, {}},
-             {ColumnKind::score, "footprint_false_alarm_ratio", "1", "false alarms of the " + footprint, none, {}}};
+    const ScoreNames end = names_of_scores(counts, survey, options);
+    const auto column = [&](const std::string& name, const char* unit, const std::string& meaning) {
+      return RowColumn{ColumnKind::score, name, unit, meaning, none, {}};
+    };
+    flow_ = {column(std::string("footprint_csi") + end.flow, "1", "critical success index of the " + footprint),
+             column(std::string("footprint_hit_rate") + end.flow, "1", "hit rate of the " + footprint),
+             column(std::string("footprint_false_alarm_ratio") + end.flow, "1", "false alarms of the " + footprint)};
     deposit_ = {
-        {ColumnKind::score, "deposit_csi", "1", "critical success index of the deposit's " + footprint, none, {}}};
-    thickness_ = {{ColumnKind::score, "thickness_rmse_m", "m", "root mean square error of " + thickness, none, {}},
-                  {ColumnKind::score, "thickness_bias_m", "m", "mean error of " + thickness, none, {}}};
+        column(std::string("deposit_csi") + end.deposit, "1", "critical success index of the deposit's " + footprint)};
+    thickness_ = {
+        column(fmt::format("thickness_rmse{}_m", end.thickness), "m", "root mean square error of " + thickness),
+        column(fmt::format("thickness_bias{}_m", end.thickness), "m", "mean error of " + thickness)};
   }
 
   /// Writes the scores of member k; different members may be scored at the same time.
@@ -137,19 +164,24 @@ class Scores {
     const MapGrid& from = counts_.scene.grid;
     const MapGrid& to = survey_.grid;
     if (!survey_.footprint.empty()) {
-      const Contingency here = compare(on_survey(counts_.flow[k], from, to), 0.5, survey_.footprint,
+      const Contingency here = compare(on_survey(counts_.flow[k], from, to), most_of_a_cell, survey_.footprint,
                                        survey_.footprint_threshold, cell_area_);
       flow_[0].values[k] = here.csi();
       flow_[1].values[k] = here.hit_rate();
       flow_[2].values[k] = here.false_alarm_ratio();
     }
     if (surveyed_deposit_.empty()) return;
-    deposit_[0].values[k] =
-        compare(on_survey(counts_.deposit[k], from, to), 0.5, surveyed_deposit_, deposit_threshold_, cell_area_).csi();
-    if (!counts_.deposit_thickness[k].kept()) return;
-    const ThicknessError error = thickness_error(
-        deposit_on_survey(counts_.deposit_thickness[k], counts_.grid_of(static_cast<std::int64_t>(k)), to),
-        surveyed_deposit_, deposit_threshold_);
+    const auto csi = [&](const std::vector<double>& covered) {
+      return compare(covered, most_of_a_cell, surveyed_deposit_, options_.deposit_threshold, cell_area_).csi();
+    };
+    if (!counts_.deposit_thickness[k].kept()) {
+      deposit_[0].values[k] = csi(on_survey(counts_.deposit[k], from, to));
+      return;
+    }
+    const OnSurveyGrid own = deposit_on_survey(counts_.deposit_thickness[k],
+                                               counts_.grid_of(static_cast<std::int64_t>(k)), survey_, options_);
+    deposit_[0].values[k] = csi(own.covered);
+    const ThicknessError error = thickness_error(own.deposit, surveyed_deposit_, options_.deposit_threshold);
     thickness_[0].values[k] = error.rmse;
     thickness_[1].values[k] = error.bias;
   }
@@ -173,7 +205,7 @@ class Scores {
   const EnsembleCounts& counts_;
   const Survey& survey_;
   std::vector<double> surveyed_deposit_;
-  double deposit_threshold_;
+  const Options& options_;
   double cell_area_;
   std::vector<RowColumn> flow_;       // overlap of the footprint of the flow
   std::vector<RowColumn> deposit_;    // overlap of the footprint of the deposit
@@ -183,9 +215,9 @@ class Scores {
 /// Scores of each member on the survey's grid, whose cells are covered where a footprint covers more than half of them;
 /// errors of the thickness, where it was kept, over the cells where either exceeds the threshold. Of a surveyed change
 /// the cells that were released are left out of the deposit, for what lies there is no gain of height.
-std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& survey, double deposit_threshold) {
+std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& survey, const Options& options) {
   const EnsembleCounts& counts = ensemble.counts;
-  Scores scores(counts, survey, deposit_threshold);
+  Scores scores(counts, survey, options);
   in_threads(counts.states.size(), "scoring the members", [&](std::size_t k) {
     if (counts.states[k] == MemberState::counted) scores.score(k);
   });
@@ -284,8 +316,7 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
     rows.columns.push_back(std::move(column));
   }
   if (survey)
-    for (RowColumn& column : member_scores(ensemble, *survey, options.deposit_threshold))
-      rows.columns.push_back(std::move(column));
+    for (RowColumn& column : member_scores(ensemble, *survey, options)) rows.columns.push_back(std::move(column));
   return rows;
 }
 

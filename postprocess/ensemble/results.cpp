@@ -316,9 +316,17 @@ Dependencies ensemble_depends(const StageContext& context) {
   return {{context.out / last}, ensemble_files(context.out)};
 }
 
-void run_ensemble(StageContext& context, const Stage& stage, const Options& options, bool alone) {
+void run_ensemble(StageContext& context, const Stage& stage, Options options, bool alone) {
   Findings found("postprocess", options.accept);
   Ensemble ensemble = read_ensemble(context);
+  options.settle_thresholds(ensemble.counts.scene.threshold);
+  if (const double counted = ensemble.counts.scene.threshold;
+      counted != options.deposit_threshold || counted != options.footprint_threshold)
+    warn("two-thresholds",
+         fmt::format("members count what is thicker than {:g} m ([solve] map_threshold_m), [postprocess] what is "
+                     "thicker than {:g} m (footprint) and {:g} m (deposit): run-outs and areas of members are not "
+                     "those of score.json. Leave the thresholds of [postprocess] out, or give all the same",
+                     counted, options.footprint_threshold, options.deposit_threshold));
   std::optional<Survey> survey;
   if (!ensemble.table.slides) {
     found.settled([&] { survey = survey_of(context, options, ensemble, alone); });

@@ -80,7 +80,7 @@ std::vector<std::vector<int>> footprint_outlines(const std::vector<std::uint8_t>
 /// Reads members.h5 and the counts in OUT and writes what follows from them, of an ensemble probability.nc last, of a
 /// budget budget.json, of slides slides.nc. With context.check_only it reads and tests alone. `alone`: there is no
 /// run.h5 besides, whose results would say what is doubtful in the survey. Throws DataError.
-void run_ensemble(StageContext& context, const Stage& stage, const Options& options, bool alone);
+void run_ensemble(StageContext& context, const Stage& stage, Options options, bool alone);
 
 /// What run_ensemble() reads, and its last result.
 Dependencies ensemble_depends(const StageContext& context);

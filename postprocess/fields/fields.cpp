@@ -206,6 +206,10 @@ std::vector<double> speed_limits(const std::vector<double>& values) {
 
 std::vector<double> thickness_limits(const std::vector<double>& given, const std::vector<double>& values) {
   return class_limits(given, largest(values));
+int threshold_decimals(double threshold) {
+  return threshold > 0 ? std::max(2, 1 - static_cast<int>(std::floor(std::log10(threshold)))) : 2;
+}
+
 }
 
 std::vector<double> time_limits(const std::vector<double>& values) {

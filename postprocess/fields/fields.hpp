@@ -88,6 +88,9 @@ std::vector<double> map_limits(const MapField& field, const RunMaps& maps, const
 /// std::logic_error for a name that is no map of a run.
 RasterStyle map_style(const std::string& name, const RunMaps& maps, const std::vector<double>& given_classes);
 
+/// How many decimals a threshold is written with: two, and more where it takes them to show two digits [m].
+int threshold_decimals(double threshold);
+
 /// A rectangle in map coordinates [m].
 struct Window {
   double west = 0, south = 0, east = 0, north = 0;

@@ -24,10 +24,18 @@ bool is_date(const std::string& text) {
 
 bool Options::writes(std::string_view word) const { return std::ranges::find(outputs, word) != outputs.end(); }
 
+void Options::settle_thresholds(double of_run) {
+  footprint_threshold = *(given.footprint_threshold = given.footprint_threshold.value_or(of_run));
+  deposit_threshold = *(given.deposit_threshold = given.deposit_threshold.value_or(of_run));
+}
+
 void Options::describe(recipe::Visitor& v) {
   v.path("run", run, "run.h5 of talus-solve; empty: the one in the output folder");
-  v.number("footprint_threshold_m", footprint_threshold, recipe::positive, "footprint: peak thickness above this");
-  v.number("deposit_threshold_m", deposit_threshold, recipe::positive, "deposit: final thickness above this");
+  v.optional_number("footprint_threshold_m", given.footprint_threshold, recipe::positive,
+                    "footprint: peak thickness above this; not given: map_threshold_m of the run (0.1 m, or 5 % of the "
+                    "median release where that is less)");
+  v.optional_number("deposit_threshold_m", given.deposit_threshold, recipe::positive,
+                    "deposit and run-out: final thickness above this; not given: the same");
   v.numbers("classes_m", classes, recipe::positive,
             "lower limits of the map's thickness classes, rising; empty: four to six of 0.1 0.5 1 2 5 10 25 50 100 200 "
             "500 that "

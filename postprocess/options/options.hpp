@@ -262,12 +262,17 @@ struct HazardOptions {
   }
 };
 
+/// The thresholds that the recipe gives [m]; empty: that of the run's maps.
+struct GivenThresholds {
+  std::optional<double> footprint_threshold{}, deposit_threshold{};
+};
+
 /// The keys of [postprocess].
 struct Options {
-  std::filesystem::path run;         // empty = OUT/run.h5
-  double footprint_threshold = 1.0;  // [m]
-  double deposit_threshold = 1.0;    // [m]
-  std::vector<double> classes;       // lower limits of the thickness classes [m]; empty = by the deposit's thickness
+  std::filesystem::path run;  // empty = OUT/run.h5
+  GivenThresholds given;
+  double footprint_threshold = 0.1, deposit_threshold = 0.1;  // [m], as settle_thresholds() leaves them
+  std::vector<double> classes;  // lower limits of the thickness classes [m]; empty = by the deposit's thickness
   std::string institution;
   std::vector<std::string> outputs{"report", "report-3d", "surface", "terrain"};  // words of the writers
   std::string start_time;         // when the failure began, UTC; empty = not known
@@ -280,6 +285,8 @@ struct Options {
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
   bool writes(std::string_view word) const;
+  /// Takes the thresholds that the recipe leaves to the program from the run: `of_run` is that of its maps [m].
+  void settle_thresholds(double of_run);
   void describe(recipe::Visitor& v);
 };
 

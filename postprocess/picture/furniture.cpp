@@ -43,7 +43,8 @@ std::string key_numbers(const PictureInput& input) {
   auto words = volume_words(input.run.summary.volume_released) + " released";
   const auto add = [&](const std::string& more) { words += "  \u00b7  " + more; };
   if (const auto runout = score.number("runout_m"))
-    add(fmt::format("run-out {} m (H/L {:.2f})", grouped(*runout), score.number("h_over_l").value_or(0)));
+    add(fmt::format("run-out to > {:g} m: {} m (H/L {:.2f})", input.options.deposit_threshold, grouped(*runout),
+                    score.number("h_over_l").value_or(0)));
   const auto deposit = score.number("deposit_csi"), footprint = score.number("footprint_csi"),
              rmse = score.number("thickness_rmse_m");
   if (deposit && footprint)
@@ -114,7 +115,8 @@ void draw_legend(Column& column, const PictureInput& input, const std::vector<do
       column.line(survey_style, fmt::format("{}: deposit > {:g} m", survey.name, options.deposit_threshold));
     if (!survey.footprint.empty()) {
       const auto limit = fmt::format(" > {:g} m", survey.footprint_threshold);
-      const auto what = !survey.polygons.empty() ? "" : (survey.footprint_is_change ? ": |change|" : ": peak") + limit;
+      const auto what =
+          !survey.polygons.empty() ? ": outline" : (survey.footprint_is_change ? ": |change|" : ": peak") + limit;
       column.line(has_deposit ? survey_footprint_style : survey_style, survey.name + what);
     }
   }
@@ -138,10 +140,11 @@ void draw_numbers(Column& column, const PictureInput& input) {
   column.pair("Released", volume_words(input.run.summary.volume_released));
   if (input.run.summary.volume_outflow > 0) column.pair("Left the map", volume_words(input.run.summary.volume_outflow));
   if (const auto area = score.number("affected_area_m2")) {
-    column.pair("Footprint",
+    column.pair(fmt::format("Footprint > {:g}\u2009m", input.options.footprint_threshold),
                 *area >= 1e6 ? fmt::format("{:.2f} km\u00b2", *area / 1e6) : fmt::format("{:.1f} ha", *area / 1e4));
   }
-  row("runout_m", "Run-out L", "\u2009m", 0);
+  const std::string limit = fmt::format(" > {:g}\u2009m", input.options.deposit_threshold);
+  row("runout_m", ("Run-out L" + limit).c_str(), "\u2009m", 0);
   row("drop_m", "Drop H", "\u2009m", 0);
   row("fahrboeschung_deg", "Angle of reach", "\u00b0", 1);
   row("max_deposit_thickness_m", "Thickest deposit", "\u2009m", 1);
@@ -150,8 +153,8 @@ void draw_numbers(Column& column, const PictureInput& input) {
   if (!input.survey) return;
   column.space(36);
   column.heading("Against " + input.survey->name);
-  row("footprint_csi", "Footprint CSI", "", 2);
-  row("deposit_csi", "Deposit CSI", "", 2);
+  row("footprint_csi", fmt::format("Footprint CSI > {:g}\u2009m", input.options.footprint_threshold).c_str(), "", 2);
+  row("deposit_csi", ("Deposit CSI" + limit).c_str(), "", 2);
   row("thickness_rmse_m", "Thickness RMSE", "\u2009m", 2);
   row("thickness_bias_m", "Thickness bias", "\u2009m", 2);
   row("runout_difference_m", "Run-out difference", "\u2009m", 0);

@@ -173,7 +173,7 @@ struct Layers {
   }
 
   void surveyed(const Survey& survey) {
-    const auto simulated = bring_to_survey_grid(maps, survey);
+    const auto simulated = bring_to_survey_grid(maps, survey, input.options);
     if (!survey.deposit.empty()) {
       add({"surveyed",
            "Deposit, " + survey.name,
@@ -207,7 +207,7 @@ struct Layers {
   void agreement(const Survey& survey, const OnSurveyGrid& simulated) {
     Raster raster{survey.grid, std::vector<double>(survey.grid.count(), nan)};
     for (std::size_t i = 0; i < raster.values.size(); ++i) {
-      const bool here = simulated.peak[i] > input.options.footprint_threshold;
+      const bool here = simulated.touched[i] > most_of_a_cell;
       const bool there = survey.footprint[i] > survey.footprint_threshold;
       if (std::isnan(survey.footprint[i]) || !(here || there)) continue;
       raster.values[i] = here && there ? both : here ? simulation_only : survey_only;

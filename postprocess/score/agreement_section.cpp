@@ -16,7 +16,7 @@ namespace {
 struct Pair {
   std::string what;
   ReferenceWords words;
-  const std::vector<double>&simulated, &surveyed;
+  const std::vector<double>&simulated, &covered, &surveyed;  // covered: the share of each cell
   double simulated_threshold, surveyed_threshold;
   Reach simulated_reach, surveyed_reach;
 };
@@ -24,8 +24,9 @@ struct Pair {
 void overlap(const Pair& pair, double cell_area, Sheet& sheet) {
   const auto& what = pair.what;
   const std::string noun = pair.words.noun, adjective = pair.words.adjective;
-  const auto c = compare(pair.simulated, pair.simulated_threshold, pair.surveyed, pair.surveyed_threshold, cell_area);
-  sheet.number(what + "_csi", what + " CSI", "", c.csi(), 3, "neither side exceeds the threshold");
+  const auto c = compare(pair.covered, most_of_a_cell, pair.surveyed, pair.surveyed_threshold, cell_area);
+  sheet.number(what + "_csi", fmt::format("{} CSI, > {:g} m", what, pair.simulated_threshold), "", c.csi(), 3,
+               "neither side exceeds the threshold");
   sheet.number(what + "_hss", what + " Heidke skill score", "", c.hss(), 3, "everywhere the same");
   sheet.number(what + "_auroc", what + " AUROC", "", auroc(pair.simulated, pair.surveyed, pair.surveyed_threshold), 3,
                "the " + noun + " says the same everywhere");
@@ -91,9 +92,10 @@ void residuals(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet
   sheet.number("residual_chi2", "reduced chi-square", "", r.chi_squared, 2, none);
 }
 
-/// The run-outs of both sides [m].
+/// The run-outs of both sides, and whether the simulated one leaves out what the survey could not detect [m].
 struct Reaches {
   double reference, simulated;
+  bool detects;
 };
 
 /// A pair of run-outs and their difference, under keys that begin as named.
@@ -102,24 +104,27 @@ void reach_lines(const std::string& key, const std::string& label, const Referen
   const std::string nowhere = "the " + std::string(words.noun) + " exceeds the threshold nowhere";
   const std::string adjective = words.adjective;
   sheet.number("survey_" + key + "_m", adjective + " " + label, "m", reach.reference, 0, nowhere);
+  if (reach.detects)
+    sheet.number(key + "_detectable_m", label + ", simulated, above the level of detection", "m", reach.simulated, 0,
+                 "nothing simulated exceeds it");
   sheet.number(key + "_difference_m", label + ", simulated - " + adjective, "m", reach.simulated - reach.reference, 0,
                std::isfinite(reach.reference) ? "the simulation has no run-out" : nowhere);
 }
 
-/// What lies between threshold and level of detection is deposit to the simulation and nothing to the survey.
+/// Says where the level of detection, and not the threshold, decides what counts.
 void blind_zone(const Scored& scored, Sheet& sheet) {
   const auto& survey = *scored.survey;
   const double threshold = scored.options.deposit_threshold;
   double cells = 0, blind = 0;
-  for (std::size_t i = 0; i < survey.error.sigma.size(); ++i) {
+  for (std::size_t i = 0; i < survey.measured.size(); ++i) {
     if (std::isnan(survey.measured[i]) || survey.measured[i] == 0) continue;
     cells += 1;
-    blind += survey.error.detection * survey.error.sigma[i] > threshold ? 1 : 0;
+    blind += survey.error.level(i) > threshold ? 1 : 0;
   }
   if (blind > 0.01 * cells)
     sheet.note(
-        fmt::format("Warning: the level of detection lies above the deposit threshold of {:g} m on {:.0f} % of the {} "
-                    "cells. Thinner deposit is simulated but cannot be seen there: raise deposit_threshold_m.",
+        fmt::format("The level of detection lies above the deposit threshold of {:g} m on {:.0f} % of the {} cells: "
+                    "thinner deposit counts as none there, in the simulation too.",
                     threshold, 100 * blind / cells, survey.words().adjective));
 }
 
@@ -174,9 +179,11 @@ void of_maps(const Survey& survey, Sheet& sheet) {
   }
   if (survey.kind == ReferenceKind::model)
     sheet.note("Reference: the run of another model, " + survey.name + ". It was not surveyed.");
-  sheet.note(fmt::format(
-      "Compared on the {}'s grid ({} x {} cells of {:g} m), brought there by area weights, which keep volume.",
-      survey.words().noun, survey.grid.columns, survey.grid.rows, survey.grid.cell));
+  sheet.note(
+      fmt::format("Compared on the {}'s grid ({} x {} cells of {:g} m), brought there by area weights, which keep "
+                  "volume; a cell is covered from "
+                  "one half on.",
+                  survey.words().noun, survey.grid.columns, survey.grid.rows, survey.grid.cell));
 }
 
 void of_scores(const ReferenceWords& words, Sheet& sheet) {
@@ -197,9 +204,14 @@ void of_scores(const ReferenceWords& words, Sheet& sheet) {
 
 void of_error(const Scored& scored, Sheet& sheet) {
   const auto& error = scored.survey->error;
+  if (error.sigma.empty() && error.noise > 0)
+    sheet.note(fmt::format(
+        "Level of detection: the survey's error is not given. By what changed where the run left the ground alone it "
+        "is {:.2g} m (five standard deviations, 1 m at most); less counts as none, in the simulation too.",
+        error.noise));
   if (error.sigma.empty()) return;
-  sheet.note(fmt::format("Level of detection: {} values below {:g} sigma count as none.",
-                         scored.survey->words().adjective, error.detection));
+  sheet.note(fmt::format("Level of detection: values below {:g} sigma count as none, {} and simulated.",
+                         error.detection, scored.survey->words().adjective));
   sheet.note(
       "Residual over sigma: simulated - measured, before the level of detection, over the cells of the union of both "
       "deposits; "
@@ -220,34 +232,39 @@ void add_agreement(const Scored& scored, const OnSurveyGrid& simulated, Sheet& s
   const auto& options = scored.options;
   const auto& maps = scored.run.maps;
   const double area = survey.grid.cell * survey.grid.cell;
-  const auto deposit_reach = reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold);
+  const double level = survey.usual_level();
+  const bool detects = level > 0;
+  const auto deposit_reach = simulated_reach(scored, simulated);
   Reach surveyed_reach{nan, nan};
   const std::string noun = survey.words().noun;
   sheet.section("Agreement with: " + survey.name);
+  if (detects) sheet.number("survey_detection_m", "level of detection, median: less counts as none", "m", level, 2);
   if (survey.footprint.empty()) {
     sheet.skip({"footprint_csi"},
                "the " + noun + " gives a deposit only (peak_thickness or polygon would give its footprint)");
   } else {
-    surveyed_reach = reach_of(scored, survey.grid, survey.footprint, survey.footprint_threshold);
-    overlap({"footprint", survey.words(), simulated.peak, survey.footprint, options.footprint_threshold,
-             survey.footprint_threshold, reach_of(scored, maps.grid, maps.peak_thickness, options.footprint_threshold),
-             surveyed_reach},
+    surveyed_reach = surveyed_reach_of(scored, survey.footprint, survey.footprint_threshold);
+    overlap({"footprint", survey.words(), simulated.peak, simulated.touched, survey.footprint,
+             options.footprint_threshold, survey.footprint_threshold,
+             reach_of(scored, maps.grid, maps.peak_thickness, options.footprint_threshold), surveyed_reach},
             area, sheet);
   }
   if (survey.deposit.empty()) {
     sheet.skip({"deposit_csi", "thickness_rmse_m", "thickness_bias_m"}, "the " + noun + " gives a footprint only");
   } else {
-    surveyed_reach = reach_of(scored, survey.grid, survey.deposit, options.deposit_threshold);
-    overlap({"deposit", survey.words(), simulated.deposit, survey.deposit, options.deposit_threshold,
+    surveyed_reach = surveyed_reach_of(scored, survey.deposit, options.deposit_threshold);
+    overlap({"deposit", survey.words(), simulated.deposit, simulated.covered, survey.deposit, options.deposit_threshold,
              options.deposit_threshold, deposit_reach, surveyed_reach},
             area, sheet);
     thickness(scored, simulated, sheet);
     residuals(scored, simulated, sheet);
     centre_offset(scored, simulated, sheet);
   }
-  reach_lines("runout", "run-out, straight", survey.words(), {surveyed_reach.straight, deposit_reach.straight}, sheet);
-  reach_lines("thalweg_runout", "run-out along the thalweg", survey.words(),
-              {surveyed_reach.along, deposit_reach.along}, sheet);
+  const std::string limit = fmt::format(", to > {:g} m", options.deposit_threshold);
+  reach_lines("runout", "run-out, straight" + limit, survey.words(),
+              {surveyed_reach.straight, deposit_reach.straight, detects}, sheet);
+  reach_lines("thalweg_runout", "run-out along the thalweg" + limit, survey.words(),
+              {surveyed_reach.along, deposit_reach.along, detects}, sheet);
   left_out(scored, simulated, sheet);
   blind_zone(scored, sheet);
 }

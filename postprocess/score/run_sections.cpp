@@ -80,11 +80,13 @@ void extent(const Scored& scored, Sheet& sheet) {
   const auto& options = scored.options;
   sheet.section("Extent");
   sheet.number("cell_m", "map cell", "m", maps.grid.cell, 2);
-  sheet.number("footprint_threshold_m", "footprint: peak thickness above", "m", options.footprint_threshold, 2);
-  sheet.number("deposit_threshold_m", "deposit: final thickness above", "m", options.deposit_threshold, 2);
-  sheet.number("affected_area_m2", "footprint area", "m2",
+  sheet.number("footprint_threshold_m", "footprint: peak thickness above", "m", options.footprint_threshold,
+               threshold_decimals(options.footprint_threshold));
+  sheet.number("deposit_threshold_m", "deposit: final thickness above", "m", options.deposit_threshold,
+               threshold_decimals(options.deposit_threshold));
+  sheet.number("affected_area_m2", fmt::format("footprint area, > {:g} m", options.footprint_threshold), "m2",
                area_above(maps.peak_thickness, options.footprint_threshold, maps.grid.cell), 0);
-  sheet.number("deposit_area_m2", "deposit area", "m2",
+  sheet.number("deposit_area_m2", fmt::format("deposit area, > {:g} m", options.deposit_threshold), "m2",
                area_above(maps.deposit_thickness, options.deposit_threshold, maps.grid.cell), 0);
   const auto extreme = [&](const std::string& key, const std::string& label, const char* unit,
                            const std::vector<double>& values, int decimals) {
@@ -145,7 +147,8 @@ void straight(const Scored& scored, Sheet& sheet) {
   double lowest = nan;
   for (std::size_t i = 0; i < maps.before.size(); ++i)
     if (maps.deposit_thickness[i] > scored.options.deposit_threshold) lowest = std::fmin(lowest, maps.before[i]);
-  sheet.number("runout_m", "run-out L, straight", "m", length, 0);
+  sheet.number("runout_m", fmt::format("run-out L, straight, to > {:g} m", scored.options.deposit_threshold), "m",
+               length, 0);
   sheet.number("drop_m", "drop H to there", "m", drop, 0);
   sheet.number("h_over_l", "H/L", "", drop / length, 4, "the deposit's farthest cell is the crown");
   sheet.number("fahrboeschung_deg", "Fahrboeschung", "deg", std::atan2(drop, length) * degrees, 2);
@@ -164,7 +167,9 @@ void along_thalweg(const Scored& scored, Sheet& sheet) {
   const double length = far->distance - scored.crown_along, drop = scored.crown->z - far->place.z;
   sheet.text("thalweg", "thalweg", scored.thalweg.origin);
   sheet.number("thalweg_length_m", "length of the thalweg", "m", scored.thalweg.length(), 0);
-  sheet.number("thalweg_runout_m", "run-out L along the thalweg", "m", length, 0);
+  sheet.number("thalweg_runout_m",
+               fmt::format("run-out L along the thalweg, to > {:g} m", scored.options.deposit_threshold), "m", length,
+               0);
   sheet.number("thalweg_drop_m", "drop H along the thalweg", "m", drop, 0);
   sheet.number("thalweg_h_over_l", "H/L along the thalweg", "", drop / length, 4, "the deposit ends at the crown");
   sheet.number("thalweg_fahrboeschung_deg", "Fahrboeschung along the thalweg", "deg",
@@ -246,6 +251,16 @@ Reach reach_of(const Scored& scored, const MapGrid& grid, const std::vector<doub
   const auto toe = farthest(grid, values, threshold, *scored.crown, {});
   const auto end = farthest_along(scored.thalweg, grid, values, threshold, {});
   return {toe ? plan_distance(*scored.crown, *toe) : nan, end ? end->distance - scored.crown_along : nan};
+}
+
+Reach surveyed_reach_of(const Scored& scored, const std::vector<double>& values, double threshold) {
+  return reach_of(scored, scored.survey->grid, sure_patches(*scored.survey, values, threshold), threshold);
+}
+
+Reach simulated_reach(const Scored& scored, const OnSurveyGrid& simulated) {
+  const double threshold = scored.options.deposit_threshold;
+  if (scored.survey->usual_level() > 0) return reach_of(scored, scored.survey->grid, simulated.deposit, threshold);
+  return reach_of(scored, scored.run.maps.grid, scored.run.maps.deposit_thickness, threshold);
 }
 
 void add_mobility(const Scored& scored, Sheet& sheet) {

@@ -49,8 +49,8 @@ void score_draw(Fixed& fixed, const DetectedChange& seen, Resampled& all) {
   const double area = survey.grid.cell * survey.grid.cell, threshold = options.deposit_threshold;
   if (survey.footprint_is_change)
     all.footprint_csi.push_back(
-        compare(simulated.peak, options.footprint_threshold, seen.footprint, survey.footprint_threshold, area).csi());
-  all.deposit_csi.push_back(compare(simulated.deposit, threshold, seen.deposit, threshold, area).csi());
+        compare(simulated.touched, most_of_a_cell, seen.footprint, survey.footprint_threshold, area).csi());
+  all.deposit_csi.push_back(compare(simulated.covered, most_of_a_cell, seen.deposit, threshold, area).csi());
   const auto error = thickness_error(simulated.deposit, seen.deposit, threshold);
   all.rmse.push_back(error.rmse);
   all.bias.push_back(error.bias);
@@ -105,15 +105,12 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
   const auto& options = scored.options;
   const auto& sigma = survey.error.sigma;
   if (sigma.empty()) return all;
-  const auto& maps = scored.run.maps;
   Fixed fixed{scored,
               simulated,
               volume_under(simulated.deposit, survey.grid.cell),
-              reach_of(scored, maps.grid, maps.deposit_thickness, options.deposit_threshold),
-              std::vector<char>(survey.deposit.size()),
+              simulated_reach(scored, simulated),
+              sure_cells(survey, survey.deposit, options.deposit_threshold),
               DistancesAlong(scored.thalweg, survey.grid)};
-  for (std::size_t i = 0; i < survey.deposit.size(); ++i)
-    fixed.seeds[i] = survey.deposit[i] > options.deposit_threshold;
   constexpr std::uint64_t seed = 1;
   RandomField errors(survey.grid, survey.error.correlation_length, seed);
   Progress progress;
@@ -127,28 +124,6 @@ Resampled resample(const Scored& scored, const OnSurveyGrid& simulated) {
     score_draw(fixed, detected(survey, value), all);
   }
   return all;
-}
-
-std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,
-                                 const std::vector<char>& seeds) {
-  std::vector<char> kept(values.size(), 0);
-  std::vector<std::size_t> open;
-  const auto reach = [&](std::size_t i) {
-    if (kept[i] != 0 || !(values[i] > threshold)) return;
-    kept[i] = 1;
-    open.push_back(i);
-  };
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (seeds[i] != 0) reach(i);
-  while (!open.empty()) {
-    const auto here = open.back();
-    open.pop_back();
-    each_near(grid, grid.cell_of(here), 1, [&](int c, int r) { reach(grid.index(c, r)); });
-  }
-  auto cleaned = values;
-  for (std::size_t i = 0; i < cleaned.size(); ++i)
-    if (values[i] > threshold && kept[i] == 0) cleaned[i] = 0;
-  return cleaned;
 }
 
 std::optional<double> Score::number(const std::string& key) const {
@@ -168,7 +143,7 @@ Score make_score(const Run& run, const Options& options, const std::optional<Sur
   add_mobility(scored, sheet);
   if (hazard != nullptr) add_hazard(*hazard, sheet);
   if (survey) {
-    const auto simulated = bring_to_survey_grid(run.maps, *survey);
+    const auto simulated = bring_to_survey_grid(run.maps, *survey, options);
     add_agreement(scored, simulated, sheet);
     add_spread(scored, simulated, sheet);
   } else {

@@ -113,6 +113,12 @@ struct Reach {
 };
 /// Run-outs from the crown to cells of `values` above `threshold`.
 Reach reach_of(const Scored& scored, const MapGrid& grid, const std::vector<double>& values, double threshold);
+/// Run-outs to surveyed `values` above `threshold`: where these have an error, to patches that hold a value that is
+/// sure.
+Reach surveyed_reach_of(const Scored& scored, const std::vector<double>& values, double threshold);
+/// The run-outs of the simulation that the survey's are compared with: where the survey has a level of detection,
+/// those of what it could have detected.
+Reach simulated_reach(const Scored& scored, const OnSurveyGrid& simulated);
 
 void add_run(const Scored& scored, Sheet& sheet);       ///< volumes, computation, extent
 void add_mobility(const Scored& scored, Sheet& sheet);  ///< run-out, drop, angles, travel
@@ -134,9 +140,5 @@ struct Resampled {
 /// the survey is. Cells measured as exactly 0 stay so. For the run-out only patches of deposit count that touch a
 /// deposit of the survey. The survey holds one such error already: the mean lies below a score that errors lower.
 Resampled resample(const Scored& scored, const OnSurveyGrid& simulated);
-
-/// `values` with 0 in patches (cells above `threshold`, joined by eight neighbours) that hold no cell of `seeds`.
-std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,
-                                 const std::vector<char>& seeds);
 
 }  // namespace talus::postprocess

@@ -225,6 +225,42 @@ Thalweg thalweg_of(const Run& run, const Options& options) {
   return options.thalweg.empty() ? found_thalweg(run, options) : given_thalweg(options.thalweg, run.maps);
 }
 
+std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,
+                                 const std::vector<char>& seeds) {
+  std::vector<char> kept(values.size(), 0);
+  std::vector<std::size_t> open;
+  const auto reach = [&](std::size_t i) {
+    if (kept[i] != 0 || !(values[i] > threshold)) return;
+    kept[i] = 1;
+    open.push_back(i);
+  };
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (seeds[i] != 0) reach(i);
+  while (!open.empty()) {
+    const auto here = open.back();
+    open.pop_back();
+    each_near(grid, grid.cell_of(here), 1, [&](int c, int r) { reach(grid.index(c, r)); });
+  }
+  auto cleaned = values;
+  for (std::size_t i = 0; i < cleaned.size(); ++i)
+    if (values[i] > threshold && kept[i] == 0) cleaned[i] = 0;
+  return cleaned;
+}
+
+std::vector<char> sure_cells(const Survey& survey, const std::vector<double>& values, double threshold) {
+  const bool measured = &values == &survey.deposit || (&values == &survey.footprint && survey.footprint_is_change);
+  std::vector<char> above(values.size(), 0), sure(values.size(), 0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    above[i] = values[i] > threshold;
+    sure[i] = above[i] != 0 && !(measured && values[i] < survey.error.sure(i));
+  }
+  return std::find(sure.begin(), sure.end(), 1) == sure.end() ? above : sure;
+}
+
+std::vector<double> sure_patches(const Survey& survey, const std::vector<double>& values, double threshold) {
+  return patches_with(survey.grid, values, threshold, sure_cells(survey, values, threshold));
+}
+
 std::vector<double> sample_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values) {
   const Raster raster{grid, values};
   std::vector<double> samples;

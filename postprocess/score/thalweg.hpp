@@ -12,6 +12,7 @@
 #include "common/run/mobility.hpp"
 #include "common/run/run_file.hpp"
 #include "postprocess/options/options.hpp"
+#include "postprocess/survey/survey.hpp"
 
 namespace talus::postprocess {
 
@@ -56,6 +57,17 @@ Thalweg thalweg_of(const Run& run, const Options& options);
 
 /// `values` of `grid` at the line's vertices, bilinear; NaN outside the grid and where a cell has no value.
 std::vector<double> sample_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values);
+
+/// `values` with 0 in patches (cells above `threshold`, joined by eight neighbours) that hold no cell of `seeds`.
+std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,
+                                 const std::vector<char>& seeds);
+
+/// The cells of surveyed `values` above `threshold` that are no noise; all above it where none is sure, and of what is
+/// no measured deposit or change.
+std::vector<char> sure_cells(const Survey& survey, const std::vector<double>& values, double threshold);
+
+/// The patches of surveyed values that hold a sure cell.
+std::vector<double> sure_patches(const Survey& survey, const std::vector<double>& values, double threshold);
 
 struct AlongLine {
   double distance = 0;  ///< along the line, of the nearest point of it [m]; beyond its ends the end segments go on

@@ -239,7 +239,8 @@ void judge_order(const Survey& survey, const RunMaps& maps) {
   std::array<Sum, 2> volume, moment;
   for (std::size_t i = 0; i < survey.measured.size(); ++i) {
     const double change = survey.measured[i], height = ground.values[i];
-    if (!(std::abs(change) > survey.footprint_threshold) || std::isnan(height)) continue;
+    const double least = std::max(survey.footprint_threshold, survey.error.level(i));
+    if (!(std::abs(change) > least) || std::isnan(height)) continue;
     const std::size_t side = change > 0;
     volume.at(side).add(std::abs(change));
     moment.at(side).add(std::abs(change) * height);
@@ -274,6 +275,8 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
   if (options.measures()) {
     survey.deposit_is_change = survey.footprint_is_change = options.thickness.empty();
     read_error(options, maps, survey);
+    if (survey.error.sigma.empty() && survey.deposit_is_change && survey.kind == ReferenceKind::survey)
+      survey.error.noise = noise_of(survey, maps);
     auto seen = detected(survey, survey.measured);
     survey.deposit = std::move(seen.deposit);
     if (survey.footprint_is_change) survey.footprint = std::move(seen.footprint);
@@ -284,16 +287,39 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
   return survey;
 }
 
-OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
+namespace {
+
+/// The share of each cell of `grid` in which values exceed a threshold; 0 where the map ends.
+std::vector<double> share_above(const MapGrid& from, std::vector<double> values, double threshold, const MapGrid& to) {
+  for (double& v : values) v = v > threshold ? 1 : 0;
+  std::vector<double> share = on_grid({from, std::move(values)}, to);
+  for (double& v : share)
+    if (!(v > 0)) v = 0;
+  return share;
+}
+
+/// What the surface of the run stood at before a change, beyond the ground: what was released and taken along [m].
+std::vector<double> before_change(const RunMaps& maps, const MapGrid& grid) {
+  std::vector<double> initial = on_grid({maps.grid, maps.initial_thickness}, grid);
+  for (double& h : initial) h = std::isnan(h) ? 0 : h;
+  if (maps.eroded_depth.empty()) return initial;
+  const auto eroded = on_grid({maps.grid, maps.eroded_depth}, grid);
+  for (std::size_t i = 0; i < eroded.size(); ++i)
+    if (std::isfinite(eroded[i])) initial[i] += eroded[i];
+  return initial;
+}
+
+}  // namespace
+
+OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey, const Options& options) {
   const auto bring = [&](const std::vector<double>& values) { return on_grid({maps.grid, values}, survey.grid); };
-  OnSurveyGrid simulated{bring(maps.deposit_thickness), {}, bring(maps.peak_thickness), 0};
-  auto initial =
-      survey.deposit_is_change ? bring(maps.initial_thickness) : std::vector<double>(survey.grid.count(), 0.0);
-  if (survey.deposit_is_change && !maps.eroded_depth.empty()) {
-    const auto eroded = bring(maps.eroded_depth);
-    for (std::size_t i = 0; i < eroded.size(); ++i)
-      if (std::isfinite(eroded[i])) initial[i] = (std::isnan(initial[i]) ? 0 : initial[i]) + eroded[i];
-  }
+  OnSurveyGrid simulated;
+  simulated.deposit = bring(maps.deposit_thickness);
+  simulated.peak = bring(maps.peak_thickness);
+  simulated.touched = share_above(maps.grid, maps.peak_thickness, options.footprint_threshold, survey.grid);
+  simulated.covered = share_above(maps.grid, maps.deposit_thickness, options.deposit_threshold, survey.grid);
+  const auto initial =
+      survey.deposit_is_change ? before_change(maps, survey.grid) : std::vector<double>(survey.grid.count(), 0.0);
   const auto& surveyed = survey.deposit.empty() ? survey.footprint : survey.deposit;
   const double area = survey.grid.cell * survey.grid.cell;
   for (std::size_t i = 0; i < surveyed.size(); ++i) {
@@ -301,21 +327,52 @@ OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey) {
     double& peak = simulated.peak[i];
     h = std::isnan(h) ? 0 : h;
     peak = std::isnan(peak) ? 0 : peak;
-    const double change = h - (std::isnan(initial[i]) ? 0 : initial[i]);
+    const double change = h - initial[i];
     if (survey.deposit_is_change) h = std::max(0.0, change);
     simulated.change.push_back(survey.deposit_is_change ? change : h);
-    if (std::isfinite(surveyed[i])) continue;
-    simulated.deposit_left_out += h * area;
-    h = simulated.change.back() = nan;
+    if (!std::isfinite(surveyed[i])) {
+      simulated.deposit_left_out += h * area;
+      h = simulated.change.back() = nan;
+      continue;
+    }
+    const double level = survey.deposit.empty() ? 0 : survey.error.level(i);
+    if (h < level) h = 0;
+    if (survey.footprint_is_change && peak < level) peak = 0;
+    if (survey.deposit_is_change) simulated.covered[i] = h > options.deposit_threshold ? 1 : 0;
+    if (h == 0) simulated.covered[i] = 0;
+    if (peak == 0) simulated.touched[i] = 0;
   }
   return simulated;
+}
+
+double Survey::usual_level() const {
+  std::vector<double> levels;
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    if (!std::isnan(measured[i]) && !std::isnan(error.level(i))) levels.push_back(error.level(i));
+  return levels.empty() ? 0 : median(levels);
+}
+
+double noise_of(const Survey& survey, const RunMaps& maps) {
+  constexpr double normal = 5 * 1.4826, most = 1;
+  std::vector<double> moved = maps.peak_thickness;
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    if (maps.initial_thickness[i] > moved[i]) moved[i] = maps.initial_thickness[i];
+  const std::vector<double> thickness = on_grid({maps.grid, moved}, survey.grid);
+  std::vector<double> left_alone;
+  std::size_t surveyed = 0;
+  for (std::size_t i = 0; i < thickness.size(); ++i) {
+    if (std::isnan(survey.measured[i])) continue;
+    ++surveyed;
+    if (!(thickness[i] > 0)) left_alone.push_back(std::abs(survey.measured[i]));
+  }
+  return 2 * left_alone.size() < surveyed || left_alone.empty() ? 0 : std::min(most, normal * median(left_alone));
 }
 
 DetectedChange detected(const Survey& survey, const std::vector<double>& value) {
   DetectedChange seen{value, value};
   const auto& error = survey.error;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    const bool detected = error.sigma.empty() || !(std::abs(value[i]) < error.detection * error.sigma[i]);
+    const bool detected = !(std::abs(value[i]) < error.level(i));
     if (std::isnan(value[i])) continue;
     seen.deposit[i] = detected ? std::max(0.0, value[i]) : 0;
     seen.footprint[i] = detected ? std::abs(value[i]) : 0;

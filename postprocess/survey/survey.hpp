@@ -39,6 +39,12 @@ struct SurveyError {
   std::vector<double> sigma;      ///< standard error of the measured value at each cell [m]; empty: not known
   double correlation_length = 0;  ///< range of a spherical correlation of the errors [m]; 0: cells are independent
   double detection = 0;           ///< level of detection over sigma; 0: off
+  double noise = 0;               ///< level of detection of a change whose sigma is not known (noise_of) [m]
+
+  /// The level of detection of a cell: what is less counts as none, in the survey and in the simulation [m].
+  double level(std::size_t cell) const { return sigma.empty() ? noise : detection * sigma[cell]; }
+  /// What is no noise on any of a million cells: five standard errors [m].
+  double sure(std::size_t cell) const { return sigma.empty() ? noise : 5 * sigma[cell]; }
 };
 
 /// What texts call a reference: "the survey", "surveyed thickness"; of another model "the reference".
@@ -62,6 +68,8 @@ struct Survey {
   std::vector<MapPolygon> polygons;
   std::vector<std::filesystem::path> inputs;
   std::vector<std::string> notes;  ///< what a reader of the scores should know of it
+  /// The median level of detection of what was measured [m]; 0 where there is none.
+  double usual_level() const;
   ReferenceWords words() const {
     return kind == ReferenceKind::model ? ReferenceWords{"reference", "reference"}
                                         : ReferenceWords{"survey", "surveyed"};
@@ -76,11 +84,20 @@ struct DetectedChange {
 /// Values below the level of detection count as 0; deposit is what is positive, footprint the size of the change.
 DetectedChange detected(const Survey& survey, const std::vector<double>& value);
 
-/// The simulation on the survey's grid; NaN where it has nothing to compare with.
+/// The level of detection of a surveyed change whose error is not given [m]: five times the standard deviation that the
+/// median of |change| tells where the run left the ground alone (1.4826 times, as of a normal distribution), so that
+/// no noise is taken for a slide. At most 1 m: what is larger there is what the run lacks. 0 where the run left alone
+/// less than half of the surveyed ground.
+double noise_of(const Survey& survey, const RunMaps& maps);
+
+/// The simulation on the survey's grid, without what the survey could not have detected; NaN where it has nothing to
+/// compare with.
 struct OnSurveyGrid {
   std::vector<double> deposit;  ///< final thickness, or max(0, final - initial thickness) for a surveyed change [m]
   std::vector<double> change;   ///< the same without the max(0, .): what `measured` would be [m]
   std::vector<double> peak;     ///< peak thickness [m]
+  std::vector<double> touched;  ///< share of the cell whose peak thickness exceeds the footprint's threshold [-]
+  std::vector<double> covered;  ///< share of it whose deposit exceeds its threshold [-]; of a change 1 or 0
   double deposit_left_out = 0;  ///< volume of simulated deposit on cells that were not surveyed [m3]
 };
 
@@ -89,12 +106,15 @@ struct OnSurveyGrid {
 std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& maps, double footprint_threshold,
                                   const DeclaredHeights& ground);
 
+/// A cell of the survey counts as touched or covered where more than this share of it is.
+inline constexpr double most_of_a_cell = 0.5;
+
 /// Area-weighted, so that volume is kept; where the run's map ends but the survey goes on, nothing arrived: 0.
-OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey);
+OnSurveyGrid bring_to_survey_grid(const RunMaps& maps, const Survey& survey, const Options& options = {});
 
 /// Refuses, unless accepted ("swapped-surveys"), that a surveyed change would have carried mass uphill: what
-/// rose by more than the footprint's threshold lies higher, on average by volume, than what fell by as much, and is
-/// more than a tenth of it. A survey that is no change of the surface says nothing of this.
+/// rose by more than the footprint's threshold and the level of detection lies higher, on average by volume, than what
+/// fell by as much, and is more than a tenth of it. A survey that is no change of the surface says nothing of this.
 void judge_order(const Survey& survey, const RunMaps& maps);
 
 /// True where cells coincide to a millionth of a cell.

@@ -9,8 +9,8 @@ import sys
 import talus
 
 
-def main(first, second, threshold_m=1.0):
-    found = talus.compare(first, second, float(threshold_m))
+def main(first, second, threshold_m=None):
+    found = talus.compare(first, second, threshold_m and float(threshold_m))
     print(f"share of the deposit that lies elsewhere  {100 * found.elsewhere:.2f} %")
     print(f"overlap of the footprints (CSI)           {found.footprint_csi:.3f}")
     print(f"overlap of the deposits (CSI)             {found.deposit_csi:.3f}")

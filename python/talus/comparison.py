@@ -26,18 +26,19 @@ class Comparison:
     rms_m: float  #: difference of thickness over where either deposit is thicker than the threshold
 
 
-def compare(first, second, threshold_m=1.0):
+def compare(first, second, threshold_m=None):
     """Compares two runs (Run, or their folders) and returns a Comparison.
 
     `elsewhere` is half the sum of |a - b| over the sum of b, where b is the first run's deposit and a the second one's,
     scaled to the volume of b: as `talus compare` has it. Run-out as in score.json: L from the highest cell of the
-    release. threshold_m [m] is that of footprint and deposit in `[postprocess]`, whose default is 1. Raises TalusError
-    where the coordinate systems differ, or there is no deposit.
+    release. threshold_m [m] is that of footprint and deposit in `[postprocess]`; None: the first run's own. Raises
+    TalusError where the coordinate systems differ, or there is no deposit.
     """
     first, second = (one if isinstance(one, Run) else open_run(one) for one in (first, second))
     if first.crs_wkt != second.crs_wkt:
         raise TalusError(f"{first.file} and {second.file}: their coordinate systems differ; run both in the same one")
     a, b = second.maps(), first.maps()
+    threshold_m = b.attrs["threshold_m"] if threshold_m is None else threshold_m
     target = _grid_over(b, a)
     volumes = {name: (_volume_on(target, a[name]), _volume_on(target, b[name]))
                for name in ("deposit_thickness", "peak_thickness")}
@@ -58,9 +59,10 @@ def compare(first, second, threshold_m=1.0):
     )  # fmt: skip
 
 
-def runout(maps, threshold_m=1.0):
+def runout(maps, threshold_m=None):
     """L [m], in plan from the crown (highest cell of the release) to the farthest deposit thicker than the threshold;
-    NaN without release or deposit."""
+    None: than the run's own. NaN without release or deposit."""
+    threshold_m = maps.attrs["threshold_m"] if threshold_m is None else threshold_m
     release, before = maps.initial_thickness.values, maps.before.values
     deposit = numpy.nan_to_num(maps.deposit_thickness.values)
     x, y = numpy.meshgrid(maps.x.values, maps.y.values)

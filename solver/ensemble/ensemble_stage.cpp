@@ -84,7 +84,7 @@ EnsembleCounts fresh_counts(const StageContext& context, const Ensemble& e, cons
   EnsembleScene scene;
   scene.scene = context.recipe.scene_name();
   scene.title = context.recipe.title();
-  scene.threshold = base.map_threshold;
+  scene.threshold = base.map_threshold.value();
   scene.grid = e.table.slides ? e.table.slides->lattice : domain.grid;
   if (!e.table.slides) {
     scene.terrain = domain.terrain.values;
@@ -257,7 +257,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
     return {};
   }
   if (context.check_only) return {};
-  EnsembleCounts counts = fresh_counts(context, e, domain, base);
+  EnsembleCounts counts = fresh_counts(context, e, domain, with_map_threshold(base, domain));
   members.note_changes(counts);
   take_up(e, flags, counts);
   counts.other_cells = e.options.is_budget();

@@ -36,6 +36,7 @@ bool is_countable(const MapGrid& own, const MemberTable& table, std::int64_t mem
 }
 
 SolveOptions settled_by(const SettledOnce& settled, SolveOptions options) {
+  if (!options.map_threshold) options.map_threshold = settled.map_threshold;
   if (settled.stiffness && leaves_stiffness(options)) options = with_stiffness(std::move(options), *settled.stiffness);
   if (settled.steps && options.integrator == Integrator::automatic)
     options = with_steps(std::move(options), *settled.steps);
@@ -70,6 +71,7 @@ Members::Members(const recipe::Recipe& recipe, const MemberTable& table, const E
     : recipe_(recipe), table_(table), paths_(paths), domain_(std::move(domain)), settles_each_(varies_settling(table)) {
   Plan base = settled_base(domain_, options);
   if (!settles_each_) settled_ = settled_once(base);
+  settled_.map_threshold = base.options.map_threshold;
   vary(base);
   base_ = std::move(base.options);
 }
@@ -151,8 +153,8 @@ std::shared_ptr<const Plan> Members::plan(std::int64_t member) const {
     const std::lock_guard<std::mutex> one(reading_);
     options = with_places(options_of(member), domain->places);
   }
-  if (settles_each_) return solver::plan(domain, options);
-  return solver::plan(domain, settled_by(settled_, std::move(options)), Settle::done);
+  options = settled_by(settled_, std::move(options));
+  return solver::plan(domain, options, settles_each_ ? Settle::as_asked : Settle::done);
 }
 
 }  // namespace talus::solver

@@ -19,8 +19,10 @@
 
 namespace talus::solver {
 
-/// What stiffness, integrator and accuracy that a recipe leaves to the program are settled at for all members.
+/// What stiffness, integrator and accuracy that a recipe leaves to the program are settled at for all members; the
+/// thickness from which cells count is the same for all in any case.
 struct SettledOnce {
+  std::optional<double> map_threshold;
   std::optional<StiffnessDemand> stiffness;
   std::optional<StepChoice> steps;
 };

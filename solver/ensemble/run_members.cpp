@@ -190,7 +190,7 @@ std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, con
   say_sanity(sanity_of(end, loop.history().rows(), outflow));
   MemberRun run;
   run.maps = final_maps(end, loop.stepper().solver().thickness());
-  run.result = measured(run.maps, plan->options.map_threshold);
+  run.result = measured(run.maps, run.maps.threshold);
   const SlideVolumes volumes = slide_volumes(end, outflow);
   run.result.volume_released = volumes.released;
   run.result.volume_final = volumes.final;

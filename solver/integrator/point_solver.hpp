@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "common/run/mobility.hpp"
 #include "solver/grid/sparse_grid.hpp"
 #include "solver/integrator/device_state.hpp"
 #include "solver/integrator/particle_measures.hpp"
@@ -28,7 +29,7 @@ class PointSolver : public Solver {
         clock_(device, clock_of(state, settings)),
         loads_(device, settings.loads, scene.load_volumes),
         shaking_(device, scene.shaking),
-        maps_(device, state.maps, settings.map_threshold),
+        maps_(device, state.maps, settings.map_threshold.value_or(covering_thickness({}))),
         measures_(device, scene.grid),
         measuring_(device),
         motion_(device) {

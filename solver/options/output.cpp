@@ -59,8 +59,9 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.number("history_interval_s", history_interval, recipe::positive, "time between records of energy and mass");
   v.number("checkpoint_interval_s", checkpoint_interval, recipe::not_negative,
            "simulated time between checkpoints; 0: only when interrupted");
-  v.number("map_threshold_m", map_threshold, recipe::positive,
-           "thickness from which speed, pressure and arrival count");
+  v.optional_number("map_threshold_m", map_threshold, recipe::positive,
+                    "thickness from which cells count: for speed, pressure, arrival, run-out and areas; not given: 0.1 "
+                    "m, or 5 % of the median released thickness where that is less");
   v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
   v.flag("energy_budget", energy_budget,
          "explicit and column-implicit steps: keep what is lost to the bed, to plastic flow, to damping and between "

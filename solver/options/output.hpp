@@ -55,10 +55,10 @@ struct SectionOptions {
 
 /// The keys of [solve] for what a run writes.
 struct OutputOptions {
-  double frame_interval = 10;      ///< [s]
-  double history_interval = 0.5;   ///< [s]
-  double checkpoint_interval = 0;  ///< simulated [s]; 0: only when interrupted
-  double map_threshold = 0.1;      ///< [m]
+  double frame_interval = 10;           ///< [s]
+  double history_interval = 0.5;        ///< [s]
+  double checkpoint_interval = 0;       ///< simulated [s]; 0: only when interrupted
+  std::optional<double> map_threshold;  ///< [m]; empty: by the release, which plan() settles
   bool point_frames = true;
   bool energy_budget = false;
   bool deterministic = false;

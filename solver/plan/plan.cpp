@@ -12,7 +12,7 @@ namespace talus::solver {
 
 Plan begin_plan(std::shared_ptr<const Domain> domain, const SolveOptions& options) {
   Plan begun{.domain = std::move(domain), .asked = with_preset(options), .options = {}, .scene = {}, .bound = {}};
-  begun.options = begun.asked;
+  begun.options = with_map_threshold(begun.asked, *begun.domain);
   begun.scene = begin_scene(*begun.domain, begun.options);
   begun.bound = speed_bound(*begun.domain, begun.options, begun.scene);
   return begun;
@@ -61,8 +61,10 @@ std::vector<Finding> findings_of(const Plan& plan) {
 }
 
 SolveOptions noted_options(const Plan& plan) {
-  if (!leaves_stiffness(plan.asked)) return plan.asked;
-  return with_stiffness(plan.asked, {.modulus = plan.options.material.youngs_modulus, .reason = {}});
+  SolveOptions noted = plan.asked;
+  noted.map_threshold = plan.options.map_threshold;
+  if (!leaves_stiffness(noted)) return noted;
+  return with_stiffness(std::move(noted), {.modulus = plan.options.material.youngs_modulus, .reason = {}});
 }
 
 std::shared_ptr<const Plan> plan(Domain domain, const SolveOptions& options, Settle how) {

@@ -19,7 +19,7 @@ namespace talus::solver {
 struct Plan {
   std::shared_ptr<const Domain> domain;
   SolveOptions asked;                     ///< of the recipe, preset resolved
-  SolveOptions options;                   ///< with stiffness and steps as they are settled
+  SolveOptions options;                   ///< with stiffness, steps and map_threshold_m as they are settled
   Scene scene;                            ///< grid, terrain tables, points, inflows, contacts
   SpeedBound bound;                       ///< of the speed of a flow
   std::vector<std::string> reasons = {};  ///< a line each on what was settled
@@ -51,7 +51,7 @@ std::vector<MapPlace> places_of(const Plan& plan);
 /// The findings of the domain, then those of the plan.
 std::vector<Finding> findings_of(const Plan& plan);
 
-/// The options as solve.used.toml notes them: those asked for, with the modulus that was settled.
+/// The options as solve.used.toml notes them: those asked for, with the modulus and map_threshold_m that were settled.
 SolveOptions noted_options(const Plan& plan);
 
 struct Plan;

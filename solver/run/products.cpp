@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "solver/integrator/point_sums.hpp"
+#include "solver/scene/make_scene.hpp"
 
 namespace talus::solver {
 namespace {
@@ -161,7 +162,7 @@ RunMaps final_maps(const RunEnd& end, std::vector<double> thickness) {
       },
       end.state.maps);
   if (end.scene.release_names.size() > 1) separate_releases(end, maps);
-  maps.threshold = end.options.map_threshold;
+  maps.threshold = *with_map_threshold(end.options, end.domain).map_threshold;
   return maps;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/scene/make_scene.hpp"
+#include "common/run/mobility.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/scene/make_inflow.hpp"
 #include "solver/scene/settings.hpp"
@@ -174,6 +175,11 @@ void each_bed(const Domain& domain, const SolveOptions& options,
     }
     visit(make_base_friction<double>(here));
   }
+}
+
+SolveOptions with_map_threshold(SolveOptions options, const Domain& domain) {
+  if (!options.map_threshold) options.map_threshold = covering_thickness(domain.release_thickness.values);
+  return options;
 }
 
 GridShape grid_shape(const Domain& domain, const SolveOptions& options) {

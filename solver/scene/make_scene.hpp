@@ -35,6 +35,10 @@ Scene begin_scene(const Domain& domain, const SolveOptions& options);
 /// That scene with its points, bed and contacts, for steps as the options settle them; it throws as make_scene().
 Scene finish_scene(const Domain& domain, const SolveOptions& options, Scene begun);
 
+/// The options with the thickness from which cells count: where the recipe gives none, that of the domain's release
+/// (covering_thickness).
+SolveOptions with_map_threshold(SolveOptions options, const Domain& domain);
+
 /// The shape of the background grid as the domain and the recipe give it.
 GridShape grid_shape(const Domain& domain, const SolveOptions& options);
 

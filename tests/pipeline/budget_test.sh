@@ -40,6 +40,7 @@ test_a_member_is_the_run_by_hand() {
     expect_exit 0 "$bin/talus-preprocess" recipe.toml --out "$name" "${set[@]}"
     expect_exit 0 "$bin/talus-solve" recipe.toml --out "$name" --on cpu "${set[@]}"
   done
+  expect_exit 0 "$bin/talus-postprocess" recipe.toml --out recipe --set ensemble.design=sobol
   /usr/bin/python3 - >stdout 2>stderr <<'PYTHON' || fail "table and runs by hand do not say the same"
 import csv
 import json
@@ -71,6 +72,23 @@ for name in ("step", "friction-more"):
     other = by_hand[name]
     elsewhere = 50 * np.abs(own - other * own.sum() / other.sum()).sum() / own.sum()
     assert abs(rows[name]["deposit_elsewhere_percent"] - elsewhere) < 1e-4, (name, elsewhere)
+# Numbers of one name are the same in the budget, the table of members and the scores of the run itself.
+score = json.load(open("recipe/score.json"))
+member = next(row for row in csv.DictReader(open("out/members.csv")) if row["name"] == "recipe")
+pairs = [("run_out_m", "runout_m"), ("footprint_csi", "footprint_csi"), ("deposit_csi", "deposit_csi"),
+         ("thickness_rmse_m", "thickness_rmse_m"), ("flow_area_m2", "affected_area_m2"),
+         ("deposit_area_m2", "deposit_area_m2"), ("largest_deposit_m", "max_deposit_thickness_m"),
+         ("drop_m", "drop_m"), ("centre_travel_m", "centre_of_mass_travel_m")]
+compared = 0
+for name, key in pairs:
+    if key not in score:
+        continue
+    for where in (table["own"], member):
+        if name in where:
+            compared += 1
+            off = abs(float(where[name]) - score[key])
+            assert off <= 1e-5 * max(1, abs(score[key])), (name, where[name], score[key])
+assert compared >= 9, compared
 done = [row for row in table["rows"] if row["state"] == "counted"]
 sizes = [row["deposit_elsewhere_percent"] for row in done]
 assert len(sizes) > 6 and sizes == sorted(sizes, reverse=True), sizes
@@ -84,6 +102,30 @@ PYTHON
   expect_exit 0 gdalinfo out/budget/deposit_spread_numerical.tif
   grep -q 'name="Spread of the deposit thickness over all doubts \[m\]"' out/budget/*.qgs ||
     fail "the project of QGIS lacks the map of spread"
+}
+
+# Members leave the scar out of a change, where the score of a run takes the gain of height: another name.
+test_scores_of_one_name_are_the_same_against_a_change() {
+  budget 'leave_out = ["cells", "survey", "strength", "friction", "transfer", "step", "modulus", "integrator"]'
+  grid later.asc "$bowl - 4 * $in_source + 2 * (i >= 6 && i < 11 && j >= 8 && j < 12)"
+  sed -i 's/^thickness = "survey.asc"/before_dem = "before.asc"\nafter_dem = "later.asc"/' recipe.toml
+  local stage
+  for stage in preprocess solve postprocess; do expect_exit 0 $stage; done
+  for stage in preprocess solve postprocess; do
+    expect_exit 0 "$bin/talus-$stage" recipe.toml --out alone --set ensemble.design=sobol
+  done
+  /usr/bin/python3 - >stdout 2>stderr <<'PYTHON' || fail "budget and run do not say the same"
+import json
+
+own, score = json.load(open("out/budget.json"))["own"], json.load(open("alone/score.json"))
+shared = sorted(set(own) & set(score))
+assert "footprint_csi" in shared and "deposit_csi_outside_release" in own, shared
+for name in shared:
+    if name not in ("steps", "wall_time_s"):
+        assert 0 != score[name] and abs(own[name] - score[name]) < 1e-5, (name, own[name], score[name])
+PYTHON
+  expect_exit 0 postprocess --set postprocess.deposit_threshold_m=0.5
+  expect_words "members count what is thicker than 0.1 m" "thicker than 0.1 m (footprint) and 0.5 m (deposit)"
 }
 
 test_a_survey_without_a_known_error_is_named() {

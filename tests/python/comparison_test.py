@@ -71,7 +71,9 @@ class ComparisonTest(unittest.TestCase):
         there = numpy.pad(deposit, ((0, 0), (2, 0)))  # the second map reaches further east
         here = numpy.pad(deposit, ((0, 0), (0, 2)))
         self.assertAlmostEqual(found.elsewhere, abs(there - here).sum() / 2 / here.sum(), places=12)
-        both, either = ((there > 1) & (here > 1)).sum(), ((there > 1) | (here > 1)).sum()
+        self.assertEqual(found.threshold_m, 0.1)
+        there, here = there > 0.1, here > 0.1
+        both, either = (there & here).sum(), (there | here).sum()
         self.assertAlmostEqual(found.deposit_csi, both / either, places=12)
         self.assertEqual(found.volume_second_m3, found.volume_first_m3)
 

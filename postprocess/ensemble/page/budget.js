@@ -15,7 +15,14 @@ function percent(value) {
 }
 
 /** Scores that have a column here, and its heading; budget.csv has the others too. */
-const shownScores = { footprint_csi: "Footprint CSI", deposit_csi: "Deposit CSI", thickness_rmse_m: "RMSE [m]" };
+const shownScores = {
+  footprint_csi: "Footprint CSI",
+  footprint_csi_by_cells: "Footprint CSI, by cells",
+  deposit_csi: "Deposit CSI",
+  deposit_csi_outside_release: "Deposit CSI, outside the release",
+  thickness_rmse_m: "RMSE [m]",
+  thickness_rmse_outside_release_m: "RMSE outside the release [m]",
+};
 
 const isDone = (line) => line.state === "counted";
 const known = (value, words) => (value === null || value === undefined ? "\u2013" : words(value));
@@ -86,10 +93,10 @@ function largestWords(lines, kind, words) {
   return found ? `${words}: ${found.title}, ${percent(found.deposit_elsewhere_percent)}.` : "";
 }
 
-function budgetTable(budget) {
+function budgetTable(budget, threshold) {
   const largest = Math.max(0, ...budget.rows.filter(isDone).map((line) => line.deposit_elsewhere_percent));
   const heads = [
-    "Run-out",
+    `Run-out > ${threshold} m`,
     "Overlap",
     "Speed",
     ...Object.keys(shownScores).filter((key) => key in budget.own).map((key) => shownScores[key]),
@@ -126,7 +133,7 @@ export function drawBudget(data) {
   ];
   document.getElementById("budget").append(
     h("p", { class: "prose" }, said.filter(Boolean).join(" ")),
-    budgetTable(budget),
+    budgetTable(budget, data.run.threshold),
     h(
       "p",
       { class: "note prose" },

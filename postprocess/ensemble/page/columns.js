@@ -30,6 +30,9 @@ const titles = {
   footprint_hit_rate: "hit rate of the footprint",
   footprint_false_alarm_ratio: "false alarm ratio of the footprint",
   deposit_csi: "CSI of the deposit",
+  footprint_csi_by_cells: "CSI of the footprint, by whole cells",
+  deposit_csi_by_cells: "CSI of the deposit, by whole cells",
+  deposit_csi_outside_release: "CSI of the deposit outside the release",
 };
 
 /** "run-out [m]"; of a key its last part, which has its unit, and the table before it where that tells more. */

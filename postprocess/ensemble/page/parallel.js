@@ -5,7 +5,8 @@ import { colours } from "../../report/page/charts.js";
 import { columnNumber, columnTitle, varies } from "./columns.js";
 
 const mostAxes = 11, // inputs first, then results
-  results = ["run_out_m", "flow_area_m2", "deposit_area_m2", "largest_speed_m_s", "volume_outflow_m3", "footprint_csi"];
+  results = ["run_out_m", "flow_area_m2", "deposit_area_m2", "largest_speed_m_s", "volume_outflow_m3", "footprint_csi",
+    "footprint_csi_by_cells"];
 const top = 46,
   bottom = 24,
   height = 300,

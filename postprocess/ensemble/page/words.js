@@ -29,7 +29,7 @@ function keyNumber(title, words, spread) {
 }
 
 const keyResults = ["run_out_m", "reach_ratio", "flow_area_m2", "deposit_area_m2", "largest_speed_m_s",
-  "volume_outflow_m3", "footprint_csi"];
+  "volume_outflow_m3", "footprint_csi", "footprint_csi_by_cells"];
 
 export function drawSummary(data) {
   const { run, members } = data;

@@ -27,8 +27,9 @@ export function headline(data) {
   if (get("volume_entrained_m3") > 0) words += `, ${volume(get("volume_entrained_m3"))} taken along`;
   if (get("runout_m") !== undefined) {
     words +=
-      `; the deposit reaches ${number(get("runout_m"))} m from the crown and ${number(get("drop_m"))} m below it ` +
-      `(H/L ${number(get("h_over_l"), 2)}, angle of reach ${number(get("fahrboeschung_deg"), 1)}\u00b0)`;
+      `; the deposit, thicker than ${data.run.thresholds.deposit} m, reaches ${number(get("runout_m"))} m from the ` +
+      `crown and ${number(get("drop_m"))} m below it (H/L ${number(get("h_over_l"), 2)}, angle of reach ` +
+      `${number(get("fahrboeschung_deg"), 1)}\u00b0)`;
   }
   words += `. Peak speed ${number(speed, speed < 10 ? 1 : 0)} m/s; ${number(get("time_end_s"))} s simulated.`;
   const agreement = [
@@ -36,25 +37,26 @@ export function headline(data) {
     ["footprint_csi", "footprint"],
   ]
     .filter(([key]) => get(key) !== undefined)
-    .map(([key, name]) => `${name} ${number(get(key), 2)}`);
+    .map(([key, name]) => `${name} (> ${data.run.thresholds[name]} m) ${number(get(key), 2)}`);
   if (survey && agreement.length)
     words += ` Overlap with \u201c${survey.name}\u201d (CSI, 1 is perfect): ${agreement.join(", ")}.`;
   return words;
 }
 
+/** Key, title (with the thickness from which cells count), words. */
 const cards = [
   ["volume_released_m3", "Released", volume],
   ["volume_entrained_m3", "Taken along", volume],
-  ["runout_m", "Run-out L"],
-  ["thalweg_runout_m", "Run-out, thalweg"],
+  ["runout_m", "Run-out L > {deposit}\u00a0m"],
+  ["thalweg_runout_m", "Run-out, thalweg > {deposit}\u00a0m"],
   ["drop_m", "Drop H"],
   ["fahrboeschung_deg", "Angle of reach"],
-  ["affected_area_m2", "Footprint", area],
-  ["deposit_area_m2", "Deposit area", area],
+  ["affected_area_m2", "Footprint > {footprint}\u00a0m", area],
+  ["deposit_area_m2", "Deposit area > {deposit}\u00a0m", area],
   ["max_deposit_thickness_m", "Thickest deposit"],
   ["max_peak_speed_m_s", "Peak speed"],
-  ["deposit_csi", "Deposit CSI"],
-  ["footprint_csi", "Footprint CSI"],
+  ["deposit_csi", "Deposit CSI > {deposit}\u00a0m"],
+  ["footprint_csi", "Footprint CSI > {footprint}\u00a0m"],
   ["thickness_rmse_m", "Thickness RMSE"],
   ["runout_difference_m", "Run-out \u2212 {noun}"],
   ["deposit_volume_ratio", "Volume / {noun}"],
@@ -90,8 +92,9 @@ export function drawSummary(data) {
   ];
   document.getElementById("byline").textContent = parts.filter(Boolean).join(" \u00b7 ");
   const box = document.getElementById("key-numbers");
+  const words_of = { noun: run.survey?.noun ?? "survey", ...run.thresholds };
   for (const [key, title, words] of cards) {
     const item = items.get(key);
-    if (item) box.append(card(item, title.replace("{noun}", run.survey?.noun ?? "survey"), words));
+    if (item) box.append(card(item, title.replace(/\{(\w+)\}/, (_, name) => words_of[name]), words));
   }
 }

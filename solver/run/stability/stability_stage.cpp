@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "common/run/mobility.hpp"
 #include "common/stage/findings.hpp"
 #include "solver/run/simulation.hpp"
 #include "solver/scene/make_solver.hpp"
@@ -159,8 +160,9 @@ CriticalMass critical_mass(const Scene& scene, const SolveOptions& options, cons
   ParticleState moved = points;
   for (std::size_t p = 0; p < points.size(); ++p) moved.volume[p] *= failure.shares[p];
   mass.displacement = thickness_of(scene, options, moved, [](std::size_t) { return true; });
+  const double covered = options.map_threshold.value_or(covering_thickness({}));
   for (std::size_t c = 0; c < all.size(); ++c)
-    mass.displacement[c] = all[c] > options.map_threshold ? mass.displacement[c] / all[c] : 0;
+    mass.displacement[c] = all[c] > covered ? mass.displacement[c] / all[c] : 0;
   measure_columns(scene, fails, mass);
   for (std::size_t p = 0; p < points.size(); ++p) mass.volume += fails(p) ? points.volume[p] : 0;
   mass.share = mass.volume / std::accumulate(points.volume.begin(), points.volume.end(), 0.0);

@@ -81,6 +81,7 @@ TEST(Outlines, stand_at_the_thresholds) {
   const auto run = small_run();
   Options options;
   options.classes = {1, 3};
+  options.footprint_threshold = 1;
   options.deposit_threshold = 2;
   const auto layers = map_outlines(run, options, {});
   ASSERT_EQ(layers.size(), 4U);
@@ -149,8 +150,8 @@ TEST_F(ForGis, writes_outlines_that_ogrinfo_finds_valid) {
                                     (scratch / "outlines.gpkg").string() +
                                     "'); print([(l.GetName(), all(f.GetGeometryRef().IsValid() for f in l), "
                                     "round(sum(f['area_m2'] for f in l))) for l in d])\" 2>/dev/null");
-  // The block of 32 x 10 cells of 3 m, cut off at 1 m: two thirds of a cell further than its outermost centres.
-  const double side = 310 + 2 * 10 * 2.0 / 3, other = 90 + 2 * 10 * 2.0 / 3, corners = 2 * (20.0 / 3) * (20.0 / 3);
+  // The block of 32 x 10 cells of 3 m, cut off at 0.1 m: 29 thirtieths of a cell further than its outermost centres.
+  const double more = 10 * 2.9 / 3, side = 310 + 2 * more, other = 90 + 2 * more, corners = 2 * more * more;
   EXPECT_TRUE(holds(said, {fmt::format("('footprint', True, {:.0f})", side * other - corners)}));
   EXPECT_FALSE(holds(said, {"False"}));
 }

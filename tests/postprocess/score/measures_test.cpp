@@ -163,7 +163,7 @@ struct Setting {
   }
   Resampled draw() const {
     Scored scored{run, options, &survey, thalweg, crown(run.maps, 1), 0};
-    return resample(scored, bring_to_survey_grid(run.maps, survey));
+    return resample(scored, bring_to_survey_grid(run.maps, survey, options));
   }
 };
 

@@ -34,8 +34,8 @@ Survey measured_survey() {
   return survey;
 }
 
-nlohmann::json json_of(const Run& run, const std::optional<Survey>& survey) {
-  return nlohmann::json::parse(to_json(make_score(run, {}, survey, thalweg_of(run, {}))));
+nlohmann::json json_of(const Run& run, const std::optional<Survey>& survey, const Options& options = {}) {
+  return nlohmann::json::parse(to_json(make_score(run, options, survey, thalweg_of(run, options))));
 }
 
 /// These keys have these values.
@@ -180,7 +180,9 @@ TEST(Score, measures_residuals_by_the_surveys_error_and_warns_where_it_hides_dep
   EXPECT_GT(json.at("deposit_csi_sd").get<double>(), 0);
   EXPECT_EQ(json.at("not_scored").at("footprint_csi_sd"),
             "the footprint is not a surveyed change, its error is not known");
-  const auto notes = [&] { return json_of(small_run(), survey).at("notes").dump(); };
+  Options options;
+  options.deposit_threshold = 1;
+  const auto notes = [&] { return json_of(small_run(), survey, options).at("notes").dump(); };
   EXPECT_FALSE(holds(notes(), {"level of detection lies above"})) << "0.98 m against 1 m";
   survey.error.sigma.assign(survey.grid.count(), 0.6);
   EXPECT_TRUE(holds(notes(), {"above the deposit threshold of 1 m on 100 %"}));

@@ -313,6 +313,59 @@ TEST_F(SurveyTest, refuses_to_score_when_much_changed_outside_the_slide) {
   EXPECT_THROW(read_found_survey(out), DataError);
 }
 
+/// A change with `noise` everywhere, and a slide of 2.4 m where the run has its deposit.
+std::vector<double> noisy_change(const RunMaps& maps, double noise) {
+  std::vector<double> change = block(maps.grid, 25, 35, 10, 20, 2.4);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] += noise * std::sin(1.7 * static_cast<double>(i));
+  return change;
+}
+
+TEST_F(SurveyTest, counts_no_noise_as_change_where_the_error_is_not_given) {
+  for (const double noise : {0.0, 0.05, 0.2}) {
+    options_.difference = raster("difference.tif", small_grid(), noisy_change(run_.maps, noise));
+    const auto survey = read_survey(options_, run_.maps, 0.1);
+    EXPECT_GE(survey->error.noise, noise) << noise;
+    EXPECT_LE(survey->error.noise, 1) << noise;
+    EXPECT_EQ(survey->usual_level(), survey->error.noise);
+    const auto above =
+        std::count_if(survey->footprint.begin(), survey->footprint.end(), [](double v) { return v > 0.1; });
+    EXPECT_EQ(above, 100) << noise;
+  }
+  options_.difference = raster("difference.tif", small_grid(), noisy_change(run_.maps, 5));
+  EXPECT_EQ(read_survey(options_, run_.maps, 0.1)->error.noise, 1) << "as large as slides: no noise";
+}
+
+TEST_F(SurveyTest, leaves_out_of_the_simulation_what_the_survey_could_not_detect) {
+  options_.difference = raster("difference.tif", small_grid(), noisy_change(run_.maps, 0));
+  options_.sigma_m = 0.5;
+  run_.maps.deposit_thickness[0] = run_.maps.peak_thickness[0] = 0.9;
+  run_.maps.deposit_thickness[1] = run_.maps.peak_thickness[1] = 1.0;
+  const auto survey = read_survey(options_, run_.maps, 0.1);
+  EXPECT_EQ(survey->usual_level(), 0.98);
+  const auto simulated = bring_to_survey_grid(run_.maps, *survey);
+  EXPECT_EQ(simulated.deposit[0], 0);
+  EXPECT_EQ(simulated.peak[0], 0);
+  EXPECT_EQ(simulated.deposit[1], 1.0);
+  EXPECT_EQ(simulated.peak[1], 1.0);
+}
+
+TEST_F(SurveyTest, counts_a_wider_cell_where_most_of_it_is_covered) {
+  auto grid = small_grid();
+  grid.columns /= 2;
+  grid.rows /= 2;
+  grid.cell *= 2;
+  options_.thickness = everywhere("survey.tif", grid, 1.0);
+  auto& maps = run_.maps;
+  maps.deposit_thickness.assign(maps.grid.count(), 0.0);
+  const int cells[][2] = {{0, 0}, {2, 0}, {3, 0}, {2, 1}};  // one of the four of a cell, three of the next one
+  for (const auto& [column, row] : cells) maps.deposit_thickness[maps.grid.index(column, row)] = 3;
+  maps.peak_thickness = maps.deposit_thickness;
+  const auto simulated = bring_to_survey_grid(maps, *read());
+  EXPECT_EQ(simulated.deposit[0], 0.75) << "the volume is kept";
+  EXPECT_EQ(simulated.covered[0], 0.25);
+  EXPECT_EQ(simulated.touched[1], 0.75);
+}
+
 /// The small slope falls to the east.
 TEST_F(SurveyTest, refuses_a_change_that_carries_mass_uphill) {
   const talus::Run run = small_run();

@@ -56,7 +56,7 @@ struct BudgetScene {
   EnsembleCounts noted() const {
     EnsembleScene scene;
     scene.grid = domain->grid;
-    scene.threshold = asked.map_threshold;
+    scene.threshold = *with_map_threshold(asked, *domain).map_threshold;
     EnsembleCounts counts = empty_counts(std::move(scene), table.count, {0, table.count}, {});
     members.note_changes(counts);
     return counts;

@@ -93,7 +93,7 @@ struct SmallEnsemble {
                                           .terrain = domain.terrain.values,
                                           .before = domain.before.values,
                                           .release_thickness = domain.release_thickness.values,
-                                          .threshold = base.map_threshold},
+                                          .threshold = *with_map_threshold(base, domain).map_threshold},
                                          table.count, part, {});
     counts.fingerprint = "heap";
     return counts;

@@ -53,7 +53,7 @@ class BlocksOnInclines : public InEachPlace {
     EnsembleScene scene;
     scene.grid = domain_.grid;
     scene.terrain = scene.before = scene.release_thickness = domain_.terrain.values;
-    scene.threshold = base.map_threshold;
+    scene.threshold = *with_map_threshold(base, domain_).map_threshold;
     EnsembleCounts counts = empty_counts(scene, count, {0, count}, thresholds);
     run_members(members, counts, {.devices = devices_for(2, GetParam())});
     EXPECT_EQ(counts.count(MemberState::counted), count);
