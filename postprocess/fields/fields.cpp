@@ -53,15 +53,25 @@ std::optional<double> fact(const RunSummary& summary, std::string_view name) {
   return std::nullopt;
 }
 
-/// Grows a window around the cells of a map that exceed a threshold.
-void grow(Window& window, const MapGrid& grid, const std::vector<double>& values, double threshold) {
+/// Grows a window around the cells of a map that reach their threshold.
+template <class Threshold>
+void grow(Window& window, const MapGrid& grid, const std::vector<double>& values, const Threshold& threshold) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i] > threshold)) continue;
+    if (!(values[i] >= threshold(i))) continue;
     const auto [column, row] = grid.cell_of(i);
     const double x = grid.west + column * grid.cell, y = grid.south + row * grid.cell;
     window = {std::min(window.west, x), std::min(window.south, y), std::max(window.east, x + grid.cell),
               std::max(window.north, y + grid.cell)};
   }
+}
+
+/// The thinnest that a map colours, outlines or takes for moved [m].
+double thinnest_shown(const RunMaps& maps, const Options& options) {
+  double least = std::min(options.footprint_threshold, options.deposit_threshold);
+  if (maps.threshold > 0) least = std::min(least, maps.threshold);
+  for (const auto* values : {&maps.peak_thickness, &maps.deposit_thickness})
+    least = std::min(least, thickness_limits(options.classes, *values).front());
+  return least;
 }
 
 /// Widen one side of [low, high] pair to `length`, keeping inside [least, most].
@@ -196,6 +206,10 @@ double round_below(double limit) {
   return power;
 }
 
+int threshold_decimals(double threshold) {
+  return threshold > 0 ? std::max(2, 1 - static_cast<int>(std::floor(std::log10(threshold)))) : 2;
+}
+
 std::vector<double> pressure_limits(const std::vector<double>& values) {
   return fitting_limits({1, 3, 5, 10, 100, 1000, 10000}, largest(values), 4, 7);
 }
@@ -206,10 +220,6 @@ std::vector<double> speed_limits(const std::vector<double>& values) {
 
 std::vector<double> thickness_limits(const std::vector<double>& given, const std::vector<double>& values) {
   return class_limits(given, largest(values));
-int threshold_decimals(double threshold) {
-  return threshold > 0 ? std::max(2, 1 - static_cast<int>(std::floor(std::log10(threshold)))) : 2;
-}
-
 }
 
 std::vector<double> time_limits(const std::vector<double>& values) {
@@ -253,12 +263,20 @@ Window affected_window(const RunMaps& maps, const Options& options, const std::o
   const auto& grid = maps.grid;
   constexpr double far = std::numeric_limits<double>::infinity();
   Window w{far, far, -far, -far};
-  grow(w, grid, maps.peak_thickness, options.footprint_threshold);
-  grow(w, grid, maps.deposit_thickness, options.deposit_threshold);
-  grow(w, grid, maps.initial_thickness, options.deposit_threshold);
+  const double thinnest = thinnest_shown(maps, options);
+  const auto shown = [&](std::size_t) { return thinnest; };
+  for (const auto* values : {&maps.peak_thickness, &maps.deposit_thickness, &maps.initial_thickness})
+    grow(w, grid, *values, shown);
   if (survey) {
-    grow(w, survey->grid, survey->deposit, options.deposit_threshold);
-    grow(w, survey->grid, survey->footprint, survey->footprint_threshold);
+    const bool measured = !survey->measured.empty();
+    const auto sure = [&](double least) {
+      return [&, least](std::size_t i) { return measured ? std::max(least, survey->error.sure(i)) : least; };
+    };
+    grow(w, survey->grid, survey->deposit, sure(options.deposit_threshold));
+    if (survey->footprint_is_change)
+      grow(w, survey->grid, survey->footprint, sure(survey->footprint_threshold));
+    else
+      grow(w, survey->grid, survey->footprint, [&](std::size_t) { return survey->footprint_threshold; });
   }
   if (w.west > w.east) return {grid.west, grid.south, grid.east(), grid.north()};
   const double margin = std::max(0.08 * std::max(w.width(), w.height()), 4 * grid.cell);

@@ -98,7 +98,8 @@ struct Window {
   double height() const { return north - south; }  ///< [m]
 };
 
-/// Everything affected, released or surveyed, with a margin, inside the run's grid; not more slender than 5:8 where the
+/// All that a map colours or outlines and all that moved, was released or surveyed (of a change with an error, what is
+/// no noise), with a margin, inside the run's grid; not more slender than 5:8 where the
 /// grid allows. The whole grid where nothing happened.
 Window affected_window(const RunMaps& maps, const Options& options, const std::optional<Survey>& survey);
 

@@ -14,6 +14,7 @@ namespace {
 
 using test::small_grid;
 using test::small_run;
+using test::block;
 
 TEST(Classes, follow_the_deposits_thickness_unless_they_are_given) {
   EXPECT_EQ(class_limits({}, 80).at(1), 2);
@@ -84,6 +85,45 @@ TEST(View, shows_what_is_affected_with_a_margin_inside_the_grid) {
   EXPECT_EQ(round_below(7.4), 5);
   EXPECT_EQ(round_below(0.2), 0.2);
   EXPECT_EQ(round_below(1999), 1000);
+}
+
+/// The frame of a run of thin flow `thick` far down from its release, beside other thresholds and classes.
+Window frame_of(double thick, const Options& options = {}, const std::optional<Survey>& survey = {}) {
+  auto run = small_run();
+  const auto& grid = run.maps.grid;
+  run.maps.deposit_thickness = block(grid, 8, 9, 15, 16, thick);
+  run.maps.deposit_thickness[grid.index(38, 28)] = thick;
+  run.maps.peak_thickness = run.maps.deposit_thickness;
+  return affected_window(run.maps, options, survey);
+}
+
+TEST(View, holds_all_that_is_coloured_or_moved) {
+  const MapGrid grid = small_grid();
+  Options coarse;
+  coarse.footprint_threshold = coarse.deposit_threshold = 1;
+  Options classes = coarse;
+  classes.classes = {0.02, 1};
+  for (const auto& [thick, options] :
+       {std::pair{0.75, coarse}, {0.1, coarse}, {0.1, Options{}}, {0.02, classes}, {0.004, Options{}}}) {
+    const Window window = frame_of(thick, options);
+    EXPECT_GE(window.east, grid.west + 39 * grid.cell) << thick;
+    EXPECT_GE(window.north, grid.south + 29 * grid.cell) << thick;
+  }
+}
+
+TEST(View, holds_what_was_surveyed_but_not_its_noise) {
+  const MapGrid grid = small_grid();
+  Survey survey;
+  survey.grid = grid;
+  survey.deposit = survey.footprint = survey.measured = block(grid, 38, 39, 28, 29, 0.5);
+  survey.footprint_is_change = survey.deposit_is_change = true;
+  survey.footprint_threshold = 0.1;
+  auto run = small_run();
+  for (auto* values : {&run.maps.deposit_thickness, &run.maps.peak_thickness, &run.maps.initial_thickness})
+    *values = block(grid, 8, 9, 15, 16, 3);
+  EXPECT_GE(affected_window(run.maps, {}, survey).east, grid.west + 39 * grid.cell);
+  survey.error = {std::vector<double>(grid.count(), 0.2), 0, 1.96};
+  EXPECT_LT(affected_window(run.maps, {}, survey).east, grid.west + 20 * grid.cell) << "2.5 standard errors";
 }
 
 TEST(Words, give_volumes_in_three_figures) {
