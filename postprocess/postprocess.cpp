@@ -148,7 +148,7 @@ void run_single(StageContext& context, const Options& options) {
   warn_of_end(job.run);
   auto& all = job.run.summary.findings;
   all.insert(all.end(), findings.list().begin(), findings.list().end());
-  job.thalweg = thalweg_of(job.run, job.options);
+  job.thalweg = thalweg_of(job.run, job.options, job.survey);
   job.hazard = hazard_of(job.run, job.options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),

@@ -156,7 +156,7 @@ void of_run(const Scored& scored, Sheet& sheet) {
                            scored.thalweg.given
                                ? ", from its higher end"
                                : "; carried on through the thickest flow to the crown and the farthest "
-                                 "deposit, and smoothed"));
+                                 "deposit of either side, and smoothed"));
 }
 
 void of_maps(const Survey& survey, Sheet& sheet) {

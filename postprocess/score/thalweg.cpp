@@ -116,24 +116,78 @@ Polyline path_of_mass(const Run& run) {
   return path;
 }
 
-/// Crown, the centre of mass on its way, farthest deposit: joined through the thickest flow.
-Polyline joined(const RunMaps& maps, const Place& crown, const Polyline& middle, const Place& toe) {
+/// Crown, the centre of mass on its way, farthest deposit: joined through what is thickest.
+Polyline joined(const MapGrid& grid, const std::vector<double>& thickness, const Place& crown, const Polyline& middle,
+                const Place& toe) {
   Place last = crown;
   Polyline line{{crown.x, crown.y}};
   if (!middle.empty()) {
     line.insert(line.end(), middle.begin(), middle.end());
     last = {middle.back()[0], middle.back()[1], 0};
   }
-  const auto rest = flow_path(maps.grid, maps.peak_thickness, last, toe);
+  const auto rest = flow_path(grid, thickness, last, toe);
   line.insert(line.end(), rest.begin() + 1, rest.end());
   return line;
 }
 
-Thalweg found_thalweg(const Run& run, const Options& options) {
+/// A map of what reaches far, on a grid of its own.
+struct Reaching {
+  const MapGrid& grid;
+  std::vector<double> values;
+  double threshold;
+};
+
+/// What was surveyed, deposit and footprint, without patches of noise; nothing without a survey.
+std::vector<Reaching> surveyed(const std::optional<Survey>& survey, const Options& options) {
+  std::vector<Reaching> maps;
+  if (!survey) return maps;
+  for (const auto& [values, threshold] :
+       {std::pair{&survey->deposit, options.deposit_threshold}, {&survey->footprint, survey->footprint_threshold}})
+    if (!values->empty()) maps.push_back({survey->grid, sure_patches(*survey, *values, threshold), threshold});
+  return maps;
+}
+
+/// The place of these maps farthest from the crown, if it is farther than `toe`.
+std::optional<Place> farther(const std::vector<Reaching>& maps, const Place& top, std::optional<Place> toe) {
+  for (const Reaching& map : maps)
+    if (const auto there = farthest(map.grid, map.values, map.threshold, top, {}))
+      if (!toe || plan_distance(top, *there) > plan_distance(top, *toe)) toe = there;
+  return toe;
+}
+
+/// The line carried on straight as far as any of the maps reaches along it, in steps of a cell.
+void carry_on(Thalweg& thalweg, const std::vector<Reaching>& maps, double cell) {
+  if (thalweg.line.size() < 2) return;
+  double end = 0;
+  for (const Reaching& map : maps)
+    if (const auto far = farthest_along(thalweg, map.grid, map.values, map.threshold, {}))
+      end = std::max(end, far->distance);
+  const auto last = thalweg.line.back(), before = thalweg.line[thalweg.line.size() - 2];
+  const double length = thalweg.length(), step = apart(before, last);
+  const int steps = static_cast<int>(std::ceil((end - length) / cell - 1e-6));
+  for (int n = 1; n <= steps; ++n) {
+    const double part = std::min(n * cell, end - length) / step;
+    thalweg.line.push_back({last[0] + part * (last[0] - before[0]), last[1] + part * (last[1] - before[1])});
+    thalweg.distance.push_back(length + part * step);
+  }
+}
+
+/// The largest peak thickness or surveyed thickness of the run's cells.
+std::vector<double> either_thickness(const RunMaps& maps, const std::vector<Reaching>& surveyed) {
+  std::vector<double> thickness = maps.peak_thickness;
+  for (const Reaching& map : surveyed) {
+    const std::vector<double> there = on_grid({map.grid, map.values}, maps.grid);
+    for (std::size_t i = 0; i < thickness.size(); ++i)
+      if (there[i] > thickness[i]) thickness[i] = there[i];
+  }
+  return thickness;
+}
+
+Thalweg found_thalweg(const Run& run, const Options& options, const std::vector<Reaching>& surveyed) {
   const auto& maps = run.maps;
   const double cell = maps.grid.cell;
   const auto top = crown(maps, options.deposit_threshold);
-  const auto toe =
+  auto toe =
       top ? farthest(maps.grid, maps.deposit_thickness, options.deposit_threshold, *top, maps.before) : std::nullopt;
   if (!toe || plan_distance(*top, *toe) < cell) {
     Thalweg none;
@@ -142,10 +196,11 @@ Thalweg found_thalweg(const Run& run, const Options& options) {
                          : "nothing moved by a cell";
     return none;
   }
+  toe = farther(surveyed, *top, toe);
   auto middle = without_returns(path_of_mass(run), 2 * cell);
   const bool by_mass = middle.size() > 1 && lengths_along(middle).back() > shortest_path_cells * cell;
   if (!by_mass) middle.clear();
-  const auto way = without_returns(joined(maps, *top, middle, *toe), cell);
+  const auto way = without_returns(joined(maps.grid, either_thickness(maps, surveyed), *top, middle, *toe), cell);
   auto thalweg = thalweg_from(smoothed(resampled(way, cell), smoothing), cell);
   thalweg.origin =
       by_mass ? "path of the centre of mass"
@@ -221,8 +276,14 @@ Polyline flow_path(const MapGrid& grid, const std::vector<double>& thickness, co
   return path;
 }
 
-Thalweg thalweg_of(const Run& run, const Options& options) {
-  return options.thalweg.empty() ? found_thalweg(run, options) : given_thalweg(options.thalweg, run.maps);
+Thalweg thalweg_of(const Run& run, const Options& options, const std::optional<Survey>& survey) {
+  std::vector<Reaching> maps = surveyed(survey, options);
+  Thalweg thalweg =
+      options.thalweg.empty() ? found_thalweg(run, options, maps) : given_thalweg(options.thalweg, run.maps);
+  maps.push_back({run.maps.grid, run.maps.peak_thickness, options.footprint_threshold});
+  maps.push_back({run.maps.grid, run.maps.deposit_thickness, options.deposit_threshold});
+  carry_on(thalweg, maps, run.maps.grid.cell);
+  return thalweg;
 }
 
 std::vector<double> patches_with(const MapGrid& grid, const std::vector<double>& values, double threshold,

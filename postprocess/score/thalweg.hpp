@@ -49,11 +49,12 @@ struct Thalweg {
 };
 
 /// The line of `[postprocess] thalweg`, turned so that it begins at its higher end, or else the path of the centre of
-/// mass over the frames, carried on through the thickest flow to the crown and to the farthest deposit, and smoothed
-/// (the idea: Tonnel et al. 2023, AvaFrame com1DFA, mass-averaged path). Where the centre of mass moves less than five
-/// cells or frames are missing, it is the way through the thickest flow from the crown to the farthest deposit. Throws
+/// mass over the frames, carried on through the thickest flow to the crown and to the farthest deposit, simulated or
+/// surveyed, and smoothed (the idea: Tonnel et al. 2023, AvaFrame com1DFA, mass-averaged path). Where the centre of
+/// mass moves less than five cells or frames are missing, it is the way through the thickest flow from the crown to
+/// there. Either line is carried on straight, which moves no place along it, as far as flow and survey reach. Throws
 /// DataError: unreadable file, no line or several in it, a line that misses the run's area.
-Thalweg thalweg_of(const Run& run, const Options& options);
+Thalweg thalweg_of(const Run& run, const Options& options, const std::optional<Survey>& survey = {});
 
 /// `values` of `grid` at the line's vertices, bilinear; NaN outside the grid and where a cell has no value.
 std::vector<double> sample_along(const Thalweg& thalweg, const MapGrid& grid, const std::vector<double>& values);

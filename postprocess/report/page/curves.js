@@ -8,8 +8,6 @@ function text(id, words) {
   document.getElementById(id).textContent = words;
 }
 
-const visible = 0.05; // [m] of a layer on a profile of hundreds
-
 /** Three charts above one another: elevation, thickness, speed. `pointAt(i)` is told which vertex is looked at. */
 export function drawProfile(data, pointAt) {
   const profile = data.profile,
@@ -22,6 +20,7 @@ export function drawProfile(data, pointAt) {
     survey = data.run.survey?.name;
   const common = { x: "Distance along the thalweg [m]", min: 0, max: s[s.length - 1], onHover: pointAt };
   const line = (label, key, more) => ({ label, data: points(s, profile[key]), ...more });
+  const visible = Math.min(0.05, data.run.thresholds.deposit); // [m] of a layer on a profile of hundreds
   // A surface is drawn where there is a layer to see; elsewhere it would hide the bed.
   const surface = (key, layer) => profile[key].map((z, i) => (profile[layer][i] > visible ? z : NaN));
   const elevations = [

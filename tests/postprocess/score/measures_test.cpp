@@ -284,6 +284,40 @@ TEST(Thalweg, takes_the_way_through_the_flow_where_the_mass_hardly_moves_and_is_
   EXPECT_EQ(none.origin, "no deposit above the threshold");
 }
 
+TEST(Thalweg, reaches_as_far_as_the_longer_of_run_and_survey) {
+  const auto run = run_with_frames({3, 8, 14, 20, 26, 27, 26});
+  const auto& grid = run.maps.grid;
+  Survey survey;
+  survey.grid = grid;
+  const auto end_of = [&](const Options& options) { return thalweg_of(run, options, survey).line.back(); };
+  for (const int columns : {20, 34}) {
+    survey.deposit = block(grid, columns - 2, columns, 10, 20, 2.0);
+    EXPECT_EQ(end_of({})[0], grid.x(34)) << "the run goes farther";
+  }
+  survey.deposit = block(grid, 37, 39, 20, 22, 0.5);
+  EXPECT_EQ(end_of({})[0], grid.x(38));
+  EXPECT_EQ(end_of({})[1], grid.y(21));
+  survey.deposit.clear();
+  survey.footprint = block(grid, 37, 40, 14, 16, 1.0);  // an outline
+  survey.footprint_threshold = 0.5;
+  EXPECT_EQ(end_of({})[0], grid.x(39));
+}
+
+TEST(Thalweg, of_a_line_that_is_given_is_carried_on_without_moving_a_place_along_it) {
+  const test::Scratch scratch;
+  Options options;
+  options.thalweg = scratch.write(
+      "line.geojson", test::geojson(test::feature("LineString", "[[600010,5100150],[600210,5100150]]"), 32632));
+  const auto run = small_run();
+  const auto thalweg = thalweg_of(run, options);
+  EXPECT_NEAR(thalweg.length(), 345 - 10, 1e-6) << "to the centre of column 34";
+  EXPECT_NEAR(project(thalweg, 600300, 5100150).distance, 290, 1e-6);
+  Survey survey;
+  survey.grid = run.maps.grid;
+  survey.deposit = block(survey.grid, 39, 40, 14, 16, 1.0);
+  EXPECT_NEAR(thalweg_of(run, options, survey).length(), 395 - 10, 1e-6);
+}
+
 TEST(Thalweg, turns_a_given_line_so_that_it_begins_at_the_higher_end) {
   const test::Scratch scratch;
   Options options;
