@@ -121,8 +121,17 @@ void write_results(StageContext& context, Job& job) {
   log_info("\n" + to_table(job.score));
 }
 
+/// Whether neither [solve] nor the rasters of the domain say what the bed's friction is.
+bool leaves_friction(const recipe::Recipe& recipe) {
+  const auto names = [&](const char* table, const char* key) {
+    return recipe.canonical(table).value_or("").find(key) != std::string::npos;
+  };
+  return !names("solve", "base") && !names("preprocess", "bed");
+}
+
 void run_single(StageContext& context, const Options& options) {
   Job job{.options = options, .out = context.out, .command_line = context.command_line};
+  job.options.leaves_friction = leaves_friction(context.recipe);
   job.used = [&] { return used_text(context, job); };
   Findings findings("postprocess", job.options.accept);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
@@ -146,14 +155,14 @@ void run_single(StageContext& context, const Options& options) {
   if (found.outside_is_doubtful && job.survey) warn("change-outside-slide", found.outside_words);
   warn_of_unused("postprocess", job.options.accept, findings.list());
   warn_of_end(job.run);
-  auto& all = job.run.summary.findings;
-  all.insert(all.end(), findings.list().begin(), findings.list().end());
   job.thalweg = thalweg_of(job.run, job.options, job.survey);
   job.hazard = hazard_of(job.run, job.options);
   log_info(fmt::format("{}: {} x {} cells of {:g} m, {} frames; {}", job.file.string(), job.run.maps.grid.columns,
                        job.run.maps.grid.rows, job.run.maps.grid.cell, job.run.frames.time.size(),
                        job.survey ? "scored against " + job.survey->name : std::string("no survey to score against")));
   check_outputs(job);
+  auto& all = job.run.summary.findings;
+  all.insert(all.end(), findings.list().begin(), findings.list().end());
   if (!context.check_only) write_results(context, job);
 }
 

@@ -191,6 +191,8 @@ std::string recipe_text(const NewScene& scene, const Slide& s, const Reading& re
   text += line("friction_angle_deg", number(p.bed_angle),
                s.has_deposit() ? "the angle at which its centre of mass went: a first guess"
                                : "usual for this volume (Scheidegger 1973, Corominas 1996)");
+  text += "\n[postprocess]\n";
+  text += line("friction_is", "\"guessed\"", "once it is: \"given\" (from elsewhere), or \"fitted\" to this event");
   text += "\n[postprocess.survey]\n";
   text += line("from_preprocess", "true", "scored against what rose between the two models");
   return text;

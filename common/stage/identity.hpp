@@ -20,6 +20,7 @@ inline constexpr const char* domain_id = "domain.id";                  ///< of t
 inline constexpr const char* recipe_of_domain = "recipe.preprocess";   ///< mark of the table that made the domain
 inline constexpr const char* recipe_of_run = "recipe.solve";           ///< mark of the table that made the run
 inline constexpr const char* obstacles_checksum = "obstacles.sha256";  ///< of the level sets written with a domain
+inline constexpr const char* volume_source = "volume_source";          ///< where the released volume comes from
 inline constexpr const char* shaking_checksum = "shaking.sha256";      ///< of the accelerogram of a run
 
 /// Hexadecimal digits of an id or a mark: no two meet by chance among the files of one folder.

@@ -41,6 +41,13 @@ void Options::describe(recipe::Visitor& v) {
             "500 that "
             "fit the thickest, and finer ones below them where it is thin");
   need_classes(v, "[postprocess] classes_m", classes);
+  recipe::choice(v, "friction_is", friction_is,
+                 {{"not-said", FrictionIs::not_said},
+                  {"given", FrictionIs::given},
+                  {"guessed", FrictionIs::guessed},
+                  {"fitted", FrictionIs::fitted}},
+                 "where the friction comes from, for the first lines of report, scores and map: given (measured, or "
+                 "from other events), guessed, or fitted to this event");
   v.names("accept", accept, {"change-outside-slide", "swapped-surveys", "different-vertical-datums"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.text("institution", institution, "who made this, for the NetCDF file");

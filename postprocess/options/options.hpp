@@ -262,6 +262,9 @@ struct HazardOptions {
   }
 };
 
+/// Where the friction of a run comes from, as its recipe says.
+enum class FrictionIs { not_said, given, guessed, fitted };
+
 /// The thresholds that the recipe gives [m]; empty: that of the run's maps.
 struct GivenThresholds {
   std::optional<double> footprint_threshold{}, deposit_threshold{};
@@ -273,6 +276,8 @@ struct Options {
   GivenThresholds given;
   double footprint_threshold = 0.1, deposit_threshold = 0.1;  // [m], as settle_thresholds() leaves them
   std::vector<double> classes;  // lower limits of the thickness classes [m]; empty = by the deposit's thickness
+  FrictionIs friction_is = FrictionIs::not_said;
+  bool leaves_friction = false;  // no key: the recipe names none, so that the program's defaults act
   std::string institution;
   std::vector<std::string> outputs{"report", "report-3d", "surface", "terrain"};  // words of the writers
   std::string start_time;         // when the failure began, UTC; empty = not known

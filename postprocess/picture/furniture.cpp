@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,8 @@ namespace {
 
 constexpr Colour ink{0.10, 0.11, 0.13};
 constexpr Colour soft_ink{0.38, 0.40, 0.43};
+
+const TextStyle belief_style{.size = 22, .colour = ink};
 
 /// Thousands set apart by thin spaces: 361 200.
 std::string grouped(double value) {
@@ -257,6 +260,27 @@ void draw_time(Canvas& canvas, double time, const View& view) {
   canvas.fill(box, {1, 1, 1});
   canvas.frame(box, {ink, 1.5, {}, 1});
   canvas.text(words, box.x + 14, box.y + 40, style);
+}
+
+std::vector<std::string> belief_lines(const Score& score, double width) {
+  Canvas ruler(1, 1);
+  std::vector<std::string> lines;
+  for (const std::string& sentence : score.belief) {
+    lines.emplace_back();
+    std::istringstream words(sentence);
+    for (std::string word; words >> word;) {
+      const std::string longer = lines.back() + (lines.back().empty() ? "" : " ") + word;
+      if (ruler.text_width(longer, belief_style) <= width || lines.back().empty())
+        lines.back() = longer;
+      else
+        lines.push_back(word);
+    }
+  }
+  return lines;
+}
+
+void draw_belief(Canvas& canvas, const std::vector<std::string>& lines, double x, double y) {
+  for (const std::string& line : lines) canvas.text(line, x, y += belief_line, belief_style);
 }
 
 void draw_footer(Canvas& canvas, const PictureInput& input, double x, double y) {

@@ -50,7 +50,10 @@ Canvas draw_map(const PictureInput& input) {
       class_limits(input.options.classes, input.instant ? input.instant->thickest : largest(maps.deposit_thickness));
   const ContourLevels contours = contour_levels(view, maps);
   const double width = left + view.box.width + gap + sidebar + right;
-  const double height = top + std::max(view.box.height, least_height) + bottom;
+  const std::vector<std::string> belief =
+      input.instant ? std::vector<std::string>{} : belief_lines(input.score, width - left - right);
+  const double below = top + std::max(view.box.height, least_height) + bottom;
+  const double height = below + belief_line * static_cast<double>(belief.size() + (belief.empty() ? 0 : 1));
 
   Canvas canvas(static_cast<int>(width), static_cast<int>(height));
   canvas.clip(view.box);
@@ -64,7 +67,8 @@ Canvas draw_map(const PictureInput& input) {
   draw_coordinates(canvas, view);
   draw_title(canvas, input, left, 30, width - left - right);
   draw_sidebar(canvas, input, view, limits, contours.interval,
-               {left + view.box.width + gap, top, sidebar, height - top - bottom});
+               {left + view.box.width + gap, top, sidebar, below - top - bottom});
+  draw_belief(canvas, belief, left, below - 50);
   draw_footer(canvas, input, left, height - 26);
   if (input.instant) draw_time(canvas, input.instant->time, view);
   return canvas;

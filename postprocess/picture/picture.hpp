@@ -184,6 +184,13 @@ void draw_sidebar(Canvas& canvas, const PictureInput& input, const View& view, c
 /// The time in the map's upper left corner.
 void draw_time(Canvas& canvas, double time, const View& view);
 
+/// What may be believed (score.belief) in lines no wider than `width` [px], and their distance [px].
+std::vector<std::string> belief_lines(const Score& score, double width);
+inline constexpr double belief_line = 30;
+
+/// Draws these lines from (x, y) downwards.
+void draw_belief(Canvas& canvas, const std::vector<std::string>& lines, double x, double y);
+
 /// One line of small print.
 void draw_footer(Canvas& canvas, const PictureInput& input, double x, double y);
 

@@ -116,6 +116,7 @@ Json hazard_json(const ReportInput& input) {
 Json score_json(const Score& score) {
   Json json{{"sections", Json::array()},
             {"not_scored", Json::array()},
+            {"belief", score.belief},
             {"notes", score.notes},
             {"findings", Json::parse(to_json(score.findings))}};
   for (const auto& section : score.sections) {
@@ -139,22 +140,37 @@ Json map_json(const ReportInput& input) {
   return json;
 }
 
-/// The used recipes of earlier stages beside the run, if they belong to it, and this stage's.
-std::vector<StageText> texts_of_stages(const Job& job) {
+/// The used recipes of earlier stages beside the run, if they belong to it, and this stage's. `other`: called with the
+/// file and the run's id where one does not.
+template <class Other>
+std::vector<StageText> texts_of_stages(const Job& job, const Other& other) {
   std::vector<StageText> texts;
   const Facts& facts = job.run.summary.provenance;
   for (const auto& [stage, id] : {std::pair{"preprocess", fact(facts, domain_id)}, {"solve", fact(facts, run_id)}}) {
     const std::filesystem::path file = job.file.parent_path() / (std::string(stage) + ".used.toml");
     std::optional<std::string> text = text_if_there(file);
     if (text && !is_used_recipe_of(*text, id)) {
-      warn("used-recipe-of-another-run",
-           fmt::format("{}: it is of another run than {}; the report leaves it out", file.string(), id));
+      other(file, id);
       text.reset();
     }
     texts.push_back({stage, std::move(text)});
   }
   texts.push_back({"postprocess", text_if_there(job.out / "postprocess.used.toml")});
   return texts;
+}
+
+/// Before anything is written, so that the scores have it too.
+void warn_of_other_recipes(const Job& job) {
+  texts_of_stages(job, [](const std::filesystem::path& file, const std::string& id) {
+    warn("used-recipe-of-another-run",
+         fmt::format("{}: it is of another run than {}; the report leaves it out", file.string(), id));
+  });
+}
+
+std::string report_of(const Job& job) {
+  return report_html({job.run, job.options, job.survey, job.score, job.thalweg,
+                      texts_of_stages(job, [](const auto&, const auto&) {}),
+                      text_if_there(job.file.parent_path() / "survey" / "survey.json"), job.file, &job.hazard});
 }
 
 }  // namespace
@@ -216,16 +232,10 @@ Json places_json(const ReportInput& input) {
 Writer report_writer() {
   return {.name = "report",
           .names = {"report.html"},
-          .write =
-              [](const Job& job) {
-                return Files{write_file(
-                    job, "report.html",
-                    report_html({job.run, job.options, job.survey, job.score, job.thalweg, texts_of_stages(job),
-                                 text_if_there(job.file.parent_path() / "survey" / "survey.json"), job.file,
-                                 &job.hazard}))};
-              },
+          .write = [](const Job& job) { return Files{write_file(job, "report.html", report_of(job))}; },
           .words = {"report", "report-3d"},
-          .asked_for = [](const Job& job) { return job.options.writes("report"); }};
+          .asked_for = [](const Job& job) { return job.options.writes("report"); },
+          .check = warn_of_other_recipes};
 }
 
 Window shown_window(const ReportInput& input) { return page_window(input.run.maps, input.options, input.survey); }

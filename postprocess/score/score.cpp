@@ -11,6 +11,7 @@
 #include "common/map/statistics.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/fields/fields.hpp"
+#include "postprocess/score/belief.hpp"
 #include "postprocess/score/contingency.hpp"
 
 namespace talus::postprocess {
@@ -152,12 +153,14 @@ Score make_score(const Run& run, const Options& options, const std::optional<Sur
   add_definitions(scored, sheet);
   Score score = sheet.take();
   score.findings = run.summary.findings;
+  score.belief = belief_of(run, options, survey ? &*survey : nullptr, score);
   return score;
 }
 
 std::string to_json(const Score& score) {
   nlohmann::ordered_json json;
   json["title"] = score.title;
+  json["belief"] = score.belief;
   for (const auto& section : score.sections)
     for (const auto& entry : section.entries)
       std::visit([&](const auto& value) { json[entry.key] = value; }, entry.value);
@@ -176,6 +179,7 @@ std::string to_table(const Score& score) {
       if (!is_text(entry)) value_width = std::max(value_width, value_text(entry).size());
     }
   std::string text = score.title + "\n" + std::string(score.title.size(), '=') + "\n";
+  for (const std::string& sentence : score.belief) text += wrapped(sentence, 110, "") + "\n";
   for (const auto& section : score.sections) {
     text += "\n" + section.title + "\n";
     for (const auto& entry : section.entries) {

@@ -42,6 +42,7 @@ struct ScoreSection {
 /// All entries, in sections, with what could not be scored and why.
 struct Score {
   std::string title;
+  std::vector<std::string> belief;  ///< what may be believed (belief.hpp)
   std::vector<ScoreSection> sections;
   std::vector<std::pair<std::string, std::string>> not_scored;  ///< key, why it has no value
   std::vector<std::string> notes;                               ///< definitions

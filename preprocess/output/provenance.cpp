@@ -17,6 +17,7 @@ Facts facts_of(const Prepared& prepared) {
               {"layer_height_m", fmt::format("{:g}", domain.layer_height)},
               {"material_points", std::to_string(prepared.point_count)}};
   for (auto& fact : facts_of(prepared.heights)) facts.push_back(std::move(fact));
+  facts.emplace_back(volume_source, prepared.volume_source);
   for (auto& fact : as_facts(prepared.total)) facts.push_back(std::move(fact));
   if (prepared.sliding_surface)
     facts.emplace_back(

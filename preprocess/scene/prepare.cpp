@@ -162,6 +162,33 @@ void judge_count(std::size_t points, const GridOptions& grid) {
          {{"material_points", count, "1"}});
 }
 
+/// Of a source under an outline.
+std::string volume_under_outline(const SlidingSurfaceOptions& given) {
+  if (given.ways_given() == 0) return "guessed from the area of its outline, an order of magnitude";
+  if (!given.depth_points.empty()) return "that of a surface computed through depth points under its outline";
+  return given.depth > 0 ? "that of a surface computed for a depth that the recipe gives" : "given by the recipe";
+}
+
+std::string volume_source_of(const Options& options, const Prepared& prepared) {
+  if (options.no_release) return "what the recipe's hydrographs let in";
+  std::string from;
+  switch (options.way()) {
+    case Way::laboratory: from = "that of the recipe's boxes"; break;
+    case Way::base_and_releases: from = "given by the recipe, as thickness or volume"; break;
+    case Way::before_and_sliding_surface: from = "measured down to a sliding surface that the recipe gives"; break;
+    case Way::before_and_outline: from = volume_under_outline(options.source.sliding_surface); break;
+    case Way::before_and_after: {
+      const double error =
+          prepared.slide && !prepared.slide->volumes.empty() ? prepared.slide->volumes.front().volume.error : nan;
+      from = "measured between two elevation models, " +
+             (std::isfinite(error) ? fmt::format("with a standard error of {} m3", grouped(error))
+                                   : std::string("of an error that is not known"));
+    }
+  }
+  if (options.thickness_factor != 1) from += fmt::format(", times {:g} by the recipe", options.thickness_factor);
+  return from;
+}
+
 }  // namespace
 
 void add_input(std::vector<std::filesystem::path>& inputs, const std::filesystem::path& source) {
@@ -232,6 +259,7 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   prepared.survey = std::move(scene.survey);
   prepared.slide = std::move(scene.slide);
   prepared.heights = std::move(scene.heights);
+  prepared.volume_source = volume_source_of(options, prepared);
   domain.findings = std::move(scene.findings);
   domain.findings.insert(domain.findings.end(), found.list().begin(), found.list().end());
   return prepared;

@@ -33,6 +33,7 @@ struct Prepared {
   std::optional<Survey> survey = {};                   // where before and after are given
   std::optional<SurveyedSlide> slide = {};
   DeclaredHeights heights = {};  // of the surface before
+  std::string volume_source = {};  // of the released volume, in words that go on "the volume is"
 };
 
 /// Adds the file of `source`, which often holds several layers, once; empty: none.

@@ -128,7 +128,7 @@ TEST_F(Program, scores_with_the_surveys_error_along_a_line_named_in_the_recipe) 
 
 TEST_F(Program, prints_a_template_that_it_accepts) {
   const auto text = stage().template_toml();
-  EXPECT_TRUE(holds(text, {"# deposit_threshold_m = ...", "[postprocess.survey]"}));
+  EXPECT_TRUE(holds(text, {"# deposit_threshold_m = ...", "friction_is = \"not-said\"", "[postprocess.survey]"}));
   recipe_ += text;
   test::write_run(out_ / "run.h5", test::small_run());
   EXPECT_NO_THROW(run_it(true)) << text;

@@ -83,6 +83,11 @@ export function drawSummary(data) {
     items = byKey(data.score);
   document.getElementById("title").textContent = run.title;
   document.getElementById("headline").textContent = headline(data);
+  const { belief, findings } = data.score;
+  document.getElementById("belief").append(
+    ...belief.map((sentence) => h("p", {}, sentence)),
+    ...(findings.length ? [h("p", {}, h("a", { href: "#findings-section" }, "What the stages warn of"))] : []),
+  );
   const parts = [
     `Scene ${run.scene}`,
     run.institution,
