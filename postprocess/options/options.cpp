@@ -25,8 +25,8 @@ bool is_date(const std::string& text) {
 bool Options::writes(std::string_view word) const { return std::ranges::find(outputs, word) != outputs.end(); }
 
 void Options::settle_thresholds(double of_run) {
-  footprint_threshold = *(given.footprint_threshold = given.footprint_threshold.value_or(of_run));
-  deposit_threshold = *(given.deposit_threshold = given.deposit_threshold.value_or(of_run));
+  footprint_threshold = given.footprint_threshold.value_or(of_run);
+  deposit_threshold = given.deposit_threshold.value_or(of_run);
 }
 
 void Options::describe(recipe::Visitor& v) {

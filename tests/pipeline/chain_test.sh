@@ -11,6 +11,11 @@ test_raw_surveys_score_as_the_true_terrain_does() {
   scene synthetic-valley
   scene synthetic-raw-survey
   expect_words 'corrected' 'voids of' 'filled by natural neighbours'
+  # The true terrain shows thinner deposit than raw surveys can detect: it is scored above their level of detection.
+  local level
+  level=$(sed -n 's/.*"survey_detection_m": \([0-9.]*\).*/\1/p' out/synthetic-raw-survey/score.json)
+  expect_exit 0 "$bin/talus-postprocess" "$TALUS_SOURCE/pipelines/synthetic-valley/recipe.toml" \
+    --out out/synthetic-valley --set "postprocess.deposit_threshold_m=$level"
   local otherwise="the raw surveys do not lead where the true terrain does"
   /usr/bin/python3 - "$TALUS_SCRATCH/out" >stdout 2>stderr <<'PYTHON' || fail "$otherwise"
 import json, sys

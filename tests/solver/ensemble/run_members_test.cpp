@@ -56,9 +56,10 @@ void expect_members_as_alone(const SmallEnsemble& ensemble, On on) {
     ASSERT_TRUE(run);
     const RunPaths files(ensemble.scratch / std::to_string(k));
     std::filesystem::create_directories(ensemble.scratch / std::to_string(k));
-    // Alone: the recipe with the member's values, on all threads.
-    const SolveOptions options =
+    // Alone: the recipe with the member's values, on all threads. All members count from one thickness, the recipe's.
+    SolveOptions options =
         options_of(ensemble.recipe.with(ensemble.table.values_of(k, "solve.")), ensemble.scratch.folder());
+    options.map_threshold = with_map_threshold(ensemble.base, ensemble.domain).map_threshold;
     Simulation(drafted(*own->domain, options, Settle::as_asked), make_device(on), files, "").run("heap", "heap");
     const talus::Run alone = read_run(files.run);
     for (const MapField& field : map_fields) {
