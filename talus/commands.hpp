@@ -86,11 +86,14 @@ struct NewScene {
   std::filesystem::path before, after;
   std::filesystem::path recipe;  ///< to be written
   bool overwrite = false;
+  std::vector<double> at = {};         ///< [easting, northing] in the slide; empty: it is found
+  std::filesystem::path outline = {};  ///< of the slide's source; empty: it is found
+  std::filesystem::path ignore = {};   ///< polygons whose change is not looked at
 };
 
 /// Compares the two models, proposes spacing, layers, friction and end time from what failed, and writes the recipe. It
-/// asks nothing. Returns 0. Throws DataError where the two models show no slide, with what talus-preprocess says of
-/// them, and where the recipe is there already.
+/// asks nothing. Returns 0. Throws DataError where the two models show no slide, or several that it might be, with what
+/// talus-preprocess says of them, and where the recipe is there already.
 int new_scene(const NewScene& scene);
 
 /// Runs the stages that have to; prints the results of all on stdout. With request.plan it runs talus-preprocess alone

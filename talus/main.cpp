@@ -88,6 +88,13 @@ void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {
   command->add_option("before", scene.before, "Elevation model from before the slide")->type_name("BEFORE")->required();
   command->add_option("after", scene.after, "Elevation model from after it")->type_name("AFTER")->required();
   command->add_option("--recipe", scene.recipe, "File to be written (default: recipe.toml)")->type_name("FILE");
+  auto* at = command->add_option("--at", scene.at, "A point in the slide, where it is not found (seed_m)")
+                 ->type_name("X,Y")
+                 ->delimiter(',')
+                 ->expected(2);
+  command->add_option("--outline", scene.outline, "Outline of its source (polygon)")->type_name("FILE")->excludes(at);
+  command->add_option("--ignore", scene.ignore, "Polygons of ground to leave out: lakes, quarries, forest (ignore)")
+      ->type_name("FILE");
   command->add_flag("--overwrite", scene.overwrite, "Write over a recipe that is there already");
   command->callback([&] { asked.command = [&] { return new_scene(scene); }; });
 }

@@ -12,6 +12,7 @@
 #include "common/domain/domain.hpp"
 #include "common/gis/raster_file.hpp"
 #include "common/recipe/dataset_name.hpp"
+#include "common/recipe/paths.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/stage/files.hpp"
 #include "common/stage/identity.hpp"
@@ -49,10 +50,24 @@ struct Reading {
   }
 };
 
+/// The tables that say which change is the slide; `file` writes the name of a file.
+template <class Name>
+std::string source_keys(const NewScene& scene, const std::vector<double>& place, const Name& file) {
+  std::string text;
+  if (!scene.outline.empty())
+    text += fmt::format("\n[preprocess.source]\npolygon = {}\n", file(scene.outline));
+  else if (!place.empty())
+    text +=
+        fmt::format("\n[preprocess.source]\nseed_m = [{:.2f}, {:.2f}]  # a point in it, which tells it from others\n",
+                    place[0], place[1]);
+  if (!scene.ignore.empty()) text += fmt::format("\n[preprocess.difference]\nignore = {}\n", file(scene.ignore));
+  return text;
+}
+
 std::string first_recipe(const NewScene& scene, const Reading& reading) {
-  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n{}",
-                     recipe::toml_text(whole(scene.before).string()), recipe::toml_text(whole(scene.after).string()),
-                     reading.keys());
+  const auto file = [](const fs::path& path) { return recipe::toml_text(whole(path).string()); };
+  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n{}{}", file(scene.before), file(scene.after),
+                     reading.keys(), source_keys(scene, scene.at, file));
 }
 
 [[noreturn]] void refuse(const NewScene& scene, const std::string& why, const std::string& mend) {
@@ -97,6 +112,9 @@ Reading compare_models(const NewScene& scene, const fs::path& folder) {
     said = prepare(scene, reading, folder);
   }
   if (succeeded(said)) return reading;
+  if (asks_for(said, "doubtful-source"))
+    refuse(scene, said.outcome.faults.back().what,
+           "Name the slide by --at X,Y or --outline FILE, or mask what is none by --ignore FILE");
   refuse(scene, to_string(said.outcome.faults.back()),
          "Look at both in a GIS: the first must be the ground before the slide, the second after it");
 }
@@ -104,7 +122,15 @@ Reading compare_models(const NewScene& scene, const fs::path& folder) {
 struct Found {
   Slide slide;
   double volume_error = nan;  ///< of the release [m3]
+  std::vector<double> place;  ///< of its thickest cell, map coordinates [m]
 };
+
+std::vector<double> thickest_cell(const Domain& domain) {
+  const auto& thickness = domain.release_thickness.values;
+  const auto cell = static_cast<std::size_t>(std::ranges::max_element(thickness) - thickness.begin());
+  const auto [column, row] = domain.grid.cell_of(cell);
+  return {domain.grid.x(column), domain.grid.y(row)};
+}
 
 Found find_slide(const NewScene& scene, const fs::path& out) {
   const Domain domain = read_domain(out / "domain.vdb");
@@ -112,7 +138,9 @@ Found find_slide(const NewScene& scene, const fs::path& out) {
   std::optional<Raster> deposit;
   if (fs::exists(rose)) deposit = read_raster(rose);
   if (deposit && deposit->values.size() != domain.grid.count()) deposit.reset();
-  Found found{measure_slide(domain.before, domain.release_thickness, deposit)};
+  Found found{measure_slide(domain.before, domain.release_thickness, deposit), nan, thickest_cell(domain)};
+  for (const Finding& finding : domain.findings)
+    if (finding.name == "larger-lowering") log_warning(finding.message);
   const auto survey = nlohmann::json::parse(text_if_there(out / "survey" / "survey.json").value_or(""), nullptr, false);
   if (!survey.is_discarded() && survey.contains("source") && survey["source"]["error_m3"].is_number())
     found.volume_error = survey["source"]["error_m3"].get<double>();
@@ -171,12 +199,15 @@ std::string head(const NewScene& scene, const Slide& s) {
       version(), s.volume, s.area, s.width, s.median_thickness, way_words(s), scene_name(scene.recipe));
 }
 
-std::string recipe_text(const NewScene& scene, const Slide& s, const Reading& reading) {
+std::string recipe_text(const NewScene& scene, const Found& found, const Reading& reading) {
+  const Slide& s = found.slide;
   const Proposal p = propose(s);
+  const auto file = [&](const fs::path& path) { return named(path, scene.recipe); };
   const auto number = [](double value) { return recipe::toml_number(value); };
   std::string text = head(scene, s);
   text += "[preprocess]\nbefore_dem = " + named(scene.before, scene.recipe) +
-          "\nafter_dem = " + named(scene.after, scene.recipe) + "\n" + reading.keys() + "\n[preprocess.grid]\n";
+          "\nafter_dem = " + named(scene.after, scene.recipe) + "\n" + reading.keys() +
+          source_keys(scene, scene.at.empty() ? found.place : scene.at, file) + "\n[preprocess.grid]\n";
   text += line("spacing_m", number(p.spacing), fmt::format("{:.0f} cells across the release", p.cells_across));
   text += line("layer_height_m", number(p.layer_height),
                fmt::format("{:.1f} layers over its median thickness; four or more", p.layers));
@@ -205,10 +236,11 @@ int new_scene(const NewScene& scene) {
     throw DataError(Fault{scene.recipe.string() + ": it is there already", "nothing is written over",
                           "Name another file with --recipe FILE, or give --overwrite"});
   const TemporaryFolder folder("talus-new");
+  for (const fs::path& file : {scene.before, scene.after}) show_path_as(whole(file), file.string(), "");
   const Reading reading = compare_models(scene, folder.path());
   const Found found = find_slide(scene, folder.path() / "out");
   if (const fs::path parent = scene.recipe.parent_path(); !parent.empty()) make_folder(parent);
-  write_text(scene.recipe, recipe_text(scene, found.slide, reading));
+  write_text(scene.recipe, recipe_text(scene, found, reading));
   log_info(fmt::format("{:.0f} m3 failed. {}", found.slide.volume, way_words(found.slide)));
   log_info(fmt::format("Read it, then: talus run {}", scene.recipe.string()));
   print_results({scene.recipe});

@@ -91,11 +91,11 @@ void measure_way(Slide& slide, const Raster& before, const Raster& deposit, cons
     tip_z = z;
   });
   slide.drop = slide.crown - tip_z;
-  if (!(slide.length > 0) || !(slide.drop > 0)) {
-    slide.length = slide.drop = 0;
+  if (slide.length > 0) slide.travel_tangent = from.drop_to(to) / std::max(from.distance_to(to), grid.cell);
+  if (!(slide.drop > 0) || !(slide.travel_tangent > 0)) {  // no mass goes uphill
+    slide.length = slide.drop = slide.travel_tangent = 0;
     return;
   }
-  slide.travel_tangent = from.drop_to(to) / std::max(from.distance_to(to), grid.cell);
   slide.head = largest_head(slide, before, crown_x, crown_y, tip_x, tip_y);
 }
 

@@ -148,8 +148,9 @@ def scar(i, j):
 def make_scene(folder):
     """A bowl of 20 x 20 cells of 10 m in which 4 x 4 cells, 4 m thick, fail: 128 points at the start."""
     ascii_grid(folder / "before.asc", lambda x, y, i, j: bowl(x, y))
-    ascii_grid(folder / "after.asc", lambda x, y, i, j: bowl(x, y) - 4 * scar(i, j))
-    ascii_grid(folder / "survey.asc", lambda x, y, i, j: 2.0 * (7 <= i < 11 and 8 <= j < 12))
+    lobe = lambda i, j: 7 <= i < 11 and 8 <= j < 12
+    ascii_grid(folder / "after.asc", lambda x, y, i, j: bowl(x, y) - 4 * scar(i, j) + 3 * lobe(i, j))
+    ascii_grid(folder / "survey.asc", lambda x, y, i, j: 2.0 * lobe(i, j))
 
 
 FIXED = {

@@ -83,7 +83,8 @@ struct CoregistrationOptions {
 
 /// The keys of [preprocess.difference].
 struct DifferenceOptions {
-  double sigma = 0;  ///< of the difference [m]; 0: learnt from stable ground
+  double sigma = 0;              ///< of the difference [m]; 0: learnt from stable ground
+  std::filesystem::path ignore;  ///< polygons whose change is not looked at
 
   template <class All>
   void describe(recipe::Visitor& v, const All& all) {
@@ -91,6 +92,11 @@ struct DifferenceOptions {
              "standard error of the difference, the root of the sum of both models' squares; 0 = by slope, from stable "
              "ground");
     need_second_model(v, all, sigma > 0, "difference.sigma_m");
+    v.path(
+        "ignore", ignore,
+        "polygons of lakes, glaciers, forest or quarries, FILE|layername=LAYER|subset=CONDITION (layer \"ignore\" or "
+        "the first, where left out): what changed there is neither source nor deposit; outlines of these go first");
+    need_second_model(v, all, !ignore.empty(), "difference.ignore");
   }
 };
 

@@ -62,7 +62,8 @@ void ElevationOptions::describe(recipe::Visitor& v, const Options& all) {
 void Options::describe(recipe::Visitor& v) {
   ElevationOptions::describe(v, *this);
   v.names("accept", accept,
-          {"swapped-surveys", "false-lengths", "steep-ground", "fill-value", "different-vertical-datums"},
+          {"swapped-surveys", "doubtful-source", "false-lengths", "steep-ground", "fill-value",
+           "different-vertical-datums", "shifted-part"},
           "what is refused because it is hardly ever right, and here is; it goes with all results");
   v.flag("no_release", no_release,
          "base_dem or a laboratory without releases: all that moves enters by [[solve.inflow]]");

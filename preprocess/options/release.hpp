@@ -52,7 +52,7 @@ struct SourceOptions {
   std::filesystem::path polygon;
   double grow = 0;           ///< of the polygon, outwards [m]
   double threshold = 0.5;    ///< [m]
-  std::vector<double> seed;  ///< easting, northing [m]; empty: the largest region
+  std::vector<double> seed;  ///< easting, northing [m]; empty: found
   SlidingSurfaceOptions sliding_surface;
 
   template <class All>
@@ -68,7 +68,8 @@ struct SourceOptions {
          "there is no outline to grow", "Give the polygon, or leave it out");
     v.number("threshold_m", threshold, recipe::not_negative, "lowering beyond which a cell belongs to such a region");
     v.numbers("seed_m", seed, recipe::any,
-              "[easting, northing]: take the region that holds this point; empty = the largest by volume");
+              "[easting, northing]: take the region that holds this point; empty = (1) the one with fall and a deposit "
+              "below, (2) the largest by volume");
     need(v, ignored || seed.empty() || seed.size() == 2, fmt::format("source.seed_m has {} values", seed.size()),
          "a point has two", "Give [easting, northing]");
     need(v, ignored || seed.empty() || polygon.empty(), "source.polygon and a seed point are both given",

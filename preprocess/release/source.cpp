@@ -88,35 +88,22 @@ void refuse_enclosed_nodata(const SurfacePair& s, const std::vector<double>& par
                 "Fill them: gdal_fillnodata.py " + s.under_file.string() + " out.tif"});
 }
 
-/// Lowering below its level of detection is none.
-Raster detected(const Raster& lowering, const std::vector<double>& level) {
-  Raster result = lowering;
-  for (std::size_t i = 0; i < level.size(); ++i)
-    if (!(lowering.values[i] > level[i])) result.values[i] = std::min(result.values[i], 0.0);
-  return result;
-}
-
-/// Noise pricks holes into a source: lowered cells that it encloses are its own.
-void fill_pricks(const Raster& lowering, std::vector<double>& part) {
+/// Noise pricks holes into a source: lowered cells that it encloses are its own, but for those that are ignored.
+void fill_pricks(const Raster& lowering, const std::vector<double>& level, std::vector<double>& part) {
   const std::vector<char> outside = around_source(lowering.grid, part);
   for (std::size_t i = 0; i < part.size(); ++i)
-    if (part[i] == 0 && !outside[i] && lowering.values[i] > 0) part[i] = 1;
+    if (part[i] == 0 && !outside[i] && lowering.values[i] > 0 && !std::isinf(level[i])) part[i] = 1;
 }
 
 std::vector<double> part_by_region(const SurfacePair& s, const SourceOptions& options) {
-  const Raster all = lowering_of(s), lowering = detected(all, s.level);
-  std::vector<Region> regions =
-      lowering_regions(lowering, s.is_sliding_surface ? std::min(rim, options.threshold) : options.threshold);
-  std::erase_if(regions, [&](const Region& region) {
-    return std::ranges::none_of(region.cells, [&](std::size_t c) { return lowering.values[c] > options.threshold; });
-  });
-  if (regions.empty()) refuse_empty(s, lowering, options.threshold);
+  const Raster all = lowering_of(s), lowering = detected_lowering(s);
+  const std::vector<Region> regions = source_regions(s, lowering, options);
   const Region& region = chosen(regions, lowering, options);
   std::vector<double> part(lowering.values.size(), 0.0);
   for (std::size_t cell : region.cells) part[cell] = 1.0;
   const bool noisy = std::ranges::any_of(s.level, [](double level) { return level > 0; });
   if (noisy) cut_fringe(all.grid, part);
-  if (noisy) fill_pricks(all, part);
+  if (noisy) fill_pricks(all, s.level, part);
   if (regions.size() > 1) {
     const Region& next = &region == &regions[0] ? regions[1] : regions[0];
     log_info(fmt::format(
@@ -253,6 +240,23 @@ SlidingSurface compute(const Raster& before, const DeclaredHeights& heights, con
 }
 
 }  // namespace
+
+Raster detected_lowering(const SurfacePair& s) {
+  Raster lowering = lowering_of(s);
+  for (std::size_t i = 0; i < s.level.size(); ++i)
+    if (!(lowering.values[i] > s.level[i])) lowering.values[i] = std::min(lowering.values[i], 0.0);
+  return lowering;
+}
+
+std::vector<Region> source_regions(const SurfacePair& s, const Raster& lowering, const SourceOptions& options) {
+  std::vector<Region> regions =
+      lowering_regions(lowering, s.is_sliding_surface ? std::min(rim, options.threshold) : options.threshold);
+  std::erase_if(regions, [&](const Region& region) {
+    return std::ranges::none_of(region.cells, [&](std::size_t c) { return lowering.values[c] > options.threshold; });
+  });
+  if (regions.empty()) refuse_empty(s, lowering, options.threshold);
+  return regions;
+}
 
 Source find_source(const SurfacePair& s, const SourceOptions& options) {
   const std::vector<double> part = s.outline.empty() ? part_by_region(s, options) : part_by_polygon(s, options);

@@ -10,6 +10,7 @@
 #include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
 #include "preprocess/options/options.hpp"
+#include "preprocess/regions/regions.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 
 namespace talus::preprocess {
@@ -27,8 +28,15 @@ struct SurfacePair {
   std::filesystem::path under_file;
   bool is_sliding_surface = false;
   std::vector<MapPolygon> outline = {};  // of the source, valid, where options.polygon names one
-  std::vector<double> level = {};        // lowering from which on a cell counts, beside the threshold [m]; empty = any
+  std::vector<double> level = {};        // lowering from which on a cell counts, beside the threshold [m]; empty = any,
+                                         // infinite = never
 };
+
+/// before less under where that is beyond its level, else 0 or the rise below 0 [m].
+Raster detected_lowering(const SurfacePair& surfaces);
+
+/// The regions of that lowering which may be the source, the largest by volume first. Throws DataError: none.
+std::vector<Region> source_regions(const SurfacePair& surfaces, const Raster& lowering, const SourceOptions& options);
 
 /// The source by its outline (cells on the outline count by their covered part), by its seed point, or the largest
 /// region by volume; under a sliding surface a region goes on to where the surface meets the ground (1 mm). Where

@@ -199,9 +199,9 @@ void add_input(std::vector<std::filesystem::path>& inputs, const std::filesystem
 std::vector<std::filesystem::path> inputs_of(const Options& options) {
   std::vector<std::filesystem::path> inputs;
   const auto add = [&](const std::filesystem::path& source) { add_input(inputs, source); };
-  for (const auto& file :
-       {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem, options.source.polygon,
-        options.source.sliding_surface.depth_points, options.coregistration.changed, options.deposit.polygon})
+  for (const auto& file : {options.before_dem, options.after_dem, options.sliding_surface, options.base_dem,
+                           options.source.polygon, options.source.sliding_surface.depth_points,
+                           options.coregistration.changed, options.difference.ignore, options.deposit.polygon})
     add(file);
   for (const ReleaseOptions& layer : options.erodible) {
     add(layer.thickness_raster);

@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/error.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/laboratory/laboratory.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/release/source.hpp"
+#include "preprocess/scene/candidates.hpp"
 #include "preprocess/survey/change.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/plausible_ground.hpp"
@@ -44,9 +46,37 @@ Surveyed surveyed(const Options& options) {
   std::vector<Filled> filled;
   result.surfaces = align({&result.survey.before, &result.survey.after}, options, &filled);
   result.slide = slide_on(result.survey, result.surfaces[0], filled);
+  if (const auto& ignored = result.slide->ignored; !ignored.empty() && std::ranges::count(ignored, 1) == 0)
+    warn("ignore-covers-nothing", options.difference.ignore.string() +
+                                      ": covers the centre of no cell of the working grid, so that nothing is ignored");
   const std::vector<Finding> all = findings_so_far();
   result.findings.assign(all.begin() + before, all.end());
   return result;
+}
+
+/// What failed between two surveys, found by itself where the recipe does not say it, once the surveys are in order.
+Source changed_source(const SurfacePair& pair, const Change& change, const Options& options, const SurveyFiles& files,
+                      SurveyMemory* memory) {
+  const auto judge = [&] {
+    judge_order(order_of(change, sure_regions(change, options.deposit), pair.before), files);
+    settle_findings();
+  };
+  SourceOptions how = options.source;
+  if (pair.outline.empty() && how.seed.empty()) {
+    const Raster lowering = detected_lowering(pair);
+    const std::vector<Region> regions = source_regions(pair, lowering, how);
+    judge();
+    const auto find = [&] {
+      const auto place =
+          place_of_slide(candidates_of({pair.before, pair.under, lowering, change}, regions, options.deposit), files);
+      return std::vector<double>(place.begin(), place.end());
+    };
+    how.seed = memory != nullptr ? memory->place(find) : find();
+    return find_source(pair, how);
+  }
+  Source source = find_source(pair, how);
+  judge();
+  return source;
 }
 
 SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory) {
@@ -54,17 +84,15 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
   SurveyedSlide& slide = *of_slide;
   if (!survey.source.empty())
     survey.source = read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
-  Source source = find_source(
-      {surfaces[0], surfaces[1], options.after_dem, false, survey.source, levels_of(slide.sigma)}, options.source);
   const Change change = change_between(surfaces[0], surfaces[1], options.deposit, slide);
-  judge_order(order_of(change, sure_regions(change, options.deposit), surfaces[0]),
-              {options.before_dem.string(), options.after_dem.string(), survey.applied});
-  settle_findings();
+  const SurveyFiles files{options.before_dem.string(), options.after_dem.string(), survey.applied};
+  const SurfacePair pair{surfaces[0], surfaces[1], options.after_dem, false, survey.source, change.noise};
+  const Source source = changed_source(pair, change, options, files, memory);
   delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
-    lowering.push_back(surfaces[0].values[c] - surfaces[1].values[c]);
-  SceneRasters scene = from_source(std::move(surfaces[0]), std::move(source));
+    lowering.push_back(std::isinf(change.noise[c]) ? 0.0 : surfaces[0].values[c] - surfaces[1].values[c]);
+  SceneRasters scene = from_source(std::move(surfaces[0]), source);
   scene.lowering = std::move(lowering);
   scene.heights = survey.before.heights();
   scene.survey = std::move(survey);

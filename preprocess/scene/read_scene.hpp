@@ -44,17 +44,26 @@ struct Surveyed {
   std::vector<Finding> findings = {};
 };
 
-/// Keeps the first survey that was compared, for scenes that differ in what they make of it. For several threads.
+/// Keeps the first survey that was compared, for scenes that differ in what they make of it, and the place of the slide
+/// that was found in it: all scenes of an ensemble are of one slide. For several threads.
 class SurveyMemory {
  public:
   /// What `options` ask for, compared anew where it is another survey than the first.
   Surveyed surveyed(const Options& options);
+  /// The place that the first call found, [easting, northing]; `find` is called where none did.
+  template <class Find>
+  std::vector<double> place(const Find& find) {
+    const std::lock_guard lock(mutex_);
+    if (place_.empty()) place_ = find();
+    return place_;
+  }
 
  private:
   static std::string mark_of(Options options);
   std::mutex mutex_;
   std::string mark_;
   std::unique_ptr<const Surveyed> kept_;
+  std::vector<double> place_;
 };
 
 /// Reads the files, aligns them, finds or reads the release. `memory`, where given, spares the comparison of the same

@@ -110,8 +110,7 @@ double signed_sum(const Change& change, const std::vector<std::size_t>& cells, c
   return sum.value() * change.rise.grid.cell * change.rise.grid.cell;
 }
 
-constexpr double tells = 0.1;   // of what fell: less that rose has no say in where mass went
-constexpr double swells = 2.0;  // what fell loosens by 1.2 to 1.5; more than twice as much has come from elsewhere
+constexpr double tells = 0.1;  // of what fell: less that rose has no say in where mass went
 
 }  // namespace
 

@@ -92,6 +92,8 @@ struct SurveyFiles {
   bool aligned = false;  ///< the later one was moved onto the earlier
 };
 
+constexpr double swells = 2.0;  ///< what fell loosens by 1.2 to 1.5; more than twice as much has come from elsewhere
+
 /// The fault "swapped-surveys" where mass would have gone uphill (what rose lies higher than what fell, and is more
 /// than a tenth of it) or would have come from nowhere (more than twice as much rose as fell).
 std::optional<Fault> wrong_order(const Order& order, const SurveyFiles& files);

@@ -97,7 +97,9 @@ std::string outside_words(const SurveyedSlide& slide) {
 
 Change change_between(const Raster& before, const Raster& after, const DepositOptions& given,
                       const SurveyedSlide& slide) {
-  const std::vector<double> noise = levels_of(slide.sigma);
+  std::vector<double> noise = levels_of(slide.sigma);
+  for (std::size_t i = 0; i < slide.ignored.size(); ++i)
+    if (slide.ignored[i]) noise[i] = INFINITY;
   Change change{after, noise, noise};
   for (std::size_t i = 0; i < change.levels.size(); ++i) {
     change.rise.values[i] -= before.values[i];

@@ -223,6 +223,8 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
     s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
   if (!options.deposit.polygon.empty())
     s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
+  if (!options.difference.ignore.empty())
+    s.ignored = read_valid_polygons(options.difference.ignore, s.grid.crs_wkt, "ignore");
   const double given = options.difference.sigma;
   s.errors = ErrorModel::of(given);
   if (how.mode == Alignment::off && given > 0) return s;
@@ -277,6 +279,7 @@ std::vector<std::string> as_lines(const Survey& s) {
 SurveyedSlide slide_on(const Survey& s, const Raster& before, const std::vector<Filled>& filled) {
   SurveyedSlide slide{{before.grid, {}}, {before.grid, {}}, {before.grid, {}}, {}, {before.grid, {}}, {}};
   slide.sigma.values = s.errors.sigmas(before);
+  if (!s.ignored.empty()) slide.ignored = cells_inside(s.ignored, before.grid);
   for (std::size_t k = 0; k < filled.size(); ++k) {
     if (filled[k].count() == 0) continue;
     slide.filled.values.resize(before.grid.count(), 0.0);

@@ -25,6 +25,7 @@ struct Survey {
   bool applied = false;
   ErrorModel errors;
   std::vector<MapPolygon> source, deposit;                    // outlines, where the recipe gives them
+  std::vector<MapPolygon> ignored;                            // ground whose change is not looked at
   std::vector<std::pair<MapGrid, std::vector<char>>> stable;  // of each patch that was looked at
 };
 
@@ -54,6 +55,7 @@ struct SurveyedSlide {
   bool outside_is_large = false;  // and is not explained: beside source and deposit, by itself, or by a given outline
   Near near = {};                 // what counts as noise though it lies within reach of the slide
   bool outside_is_doubtful = false;  // that is much
+  std::vector<char> ignored = {};    // cells whose change is not looked at; empty where all is
 };
 
 /// Standard error of every cell of a surface, and what was filled (in the order of the two surveys; empty = nothing);
@@ -66,7 +68,7 @@ std::string outside_words(const SurveyedSlide& slide);
 /// Level of detection of every cell.
 std::vector<double> levels_of(const Raster& sigma);
 
-/// After less before, with what of it is believed.
+/// After less before, with what of it is believed: nothing on ignored ground, whose levels are infinite.
 Change change_between(const Raster& before, const Raster& after, const DepositOptions& given,
                       const SurveyedSlide& slide);
 

@@ -9,6 +9,7 @@ erodible_scene() {
   scene
   grid after.asc "$bowl - 4 * $in_source - 1 * (i >= 8 && i < 11 && j >= 8 && j < 12)"
   sed -i 's/^\[preprocess.grid\]/[[preprocess.erodible]]\nname = "ground"\nlowering = true\n\n&/' recipe.toml
+  sed -i 's/^\[preprocess.grid\]/[preprocess.source]\nseed_m = [500045, 5000105]\n\n&/' recipe.toml
   cat >>recipe.toml <<'TOML'
 
 [[solve.part]]

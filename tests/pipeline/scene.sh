@@ -18,12 +18,13 @@ grid() {
 
 bowl='0.004 * ((x - 100)^2 + (y - 100)^2)'
 in_source='(i >= 3 && i < 7 && j >= 8 && j < 12)'
+in_deposit='(i >= 7 && i < 11 && j >= 8 && j < 12)'
 
 # scene: before.asc, after.asc, survey.asc and recipe.toml in the current folder. It runs in about a second.
 scene() {
   grid before.asc "$bowl"
-  grid after.asc "$bowl - 4 * $in_source"
-  grid survey.asc "2 * (i >= 7 && i < 11 && j >= 8 && j < 12)"
+  grid after.asc "$bowl - 4 * $in_source + 3 * $in_deposit"
+  grid survey.asc "2 * $in_deposit"
   cat >recipe.toml <<'TOML'
 [scene]
 name = "bowl"

@@ -21,7 +21,8 @@ struct RunInProcess : test::InScratch {
     write_grid("before.asc", 0);
     write_grid("after.asc", 4);
     scratch.write("recipe.toml",
-                  "[preprocess]\nbefore_dem = \"before.asc\"\nafter_dem = \"after.asc\"\n[preprocess.grid]\n"
+                  "[preprocess]\nbefore_dem = \"before.asc\"\nafter_dem = \"after.asc\"\n[preprocess.source]\n"
+                  "seed_m = [500045, 5000105]\n[preprocess.grid]\n"
                   "layer_height_m = 2.0\n[solve]\nend_time_s = 1.0\n[postprocess]\noutputs = []\n");
   }
   void write_grid(const std::string& name, double depth) const {

@@ -216,7 +216,7 @@ TEST(plausible, surveys_in_the_wrong_order_are_refused_and_accepted_by_name) {
                                      "accept = [\"swapped-surveys\"] in [preprocess]"}));
   valley.options.accept = {"false-lengths"};
   EXPECT_NE(valley.fault(), "") << "another name is no acceptance";
-  valley.options.accept = {"swapped-surveys"};
+  valley.options.accept = {"swapped-surveys", "doubtful-source"};
   const Prepared prepared = prepare(valley.options, Points::counted);
   ASSERT_TRUE(is_accepted(prepared.domain.findings, "swapped-surveys"));
   EXPECT_TRUE(holds(accepted_line(prepared.domain.findings), {"before.tif"}));

@@ -96,6 +96,7 @@ struct MadeSlide {
     };
     const auto before = test::write(scratch, "before.tif", surface({}));
     options = test::two_models(before, test::write(scratch, "after.tif", surface(caps)));
+    options.source.seed = {grid.west + scar.x, grid.south + scar.y};
   }
 
   double volume(const Cap& cap) const {
@@ -213,6 +214,7 @@ TEST(delineation, samples_have_the_deposit_of_their_scar_and_nothing_outside) {
     Options options = pair_in(samples / name);
     options.coregistration.mode = Alignment::apply;
     options.voids.fill = 1e5;
+    if (std::string(name) == "rock-slope") options.source.seed = {400475, 5200785};
     const SurveyedSlide slide = *prepare(options, Points::counted).slide;
     EXPECT_EQ(slide.outside.sure_rise + slide.outside.sure_fall, 0) << name;
     EXPECT_FALSE(slide.outside_is_large) << name;
