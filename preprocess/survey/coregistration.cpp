@@ -157,14 +157,37 @@ ShiftFit settle(std::vector<Patch>& patches, const std::vector<int>& sought, dou
   return last;
 }
 
+/// The misfits of stable cells at two placements, of the cells that have one at both.
+std::array<std::vector<double>, 2> shared_misfits(const std::vector<Patch>& patches, const Placement& one,
+                                                  const Placement& other) {
+  std::array<std::vector<double>, 2> both;
+  for (const Patch& p : patches) {
+    const std::vector<double> first = misfit(p, one), second = misfit(p, other);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (!p.stable[i] || std::isnan(first[i] + second[i])) continue;
+      both[0].push_back(first[i]);
+      both[1].push_back(second[i]);
+    }
+  }
+  return both;
+}
+
+/// True where a correction raises NMAD or median size of the misfit: it makes worse what it should mend.
+bool raises_spread(const std::vector<Patch>& patches, const Placement& from, const Placement& to) {
+  const auto [was, is] = shared_misfits(patches, from, to);
+  const Residuals before = residuals_of(was), after = residuals_of(is);
+  return after.nmad > before.nmad || after.median_absolute > before.median_absolute;
+}
+
 /// A tilt within three times its error is noise. Cells beside one another err alike: one in a hundred counts.
 void fit_tilt(std::vector<Patch>& patches, std::vector<int> sought, double length, Coregistration& result) {
   Coregistration tilted = result;
   sought.insert(sought.end(), {ShiftUnknown::tilt_x, ShiftUnknown::tilt_y});
   const ShiftFit last = settle(patches, sought, length, tilted);
   const auto clear = [&](double tilt, double error) { return std::abs(tilt * length) > 3 * 10 * error + 1e-9; };
-  if (tilted.converged && (clear(tilted.placement.tilt_x, last.error[ShiftUnknown::tilt_x]) ||
-                           clear(tilted.placement.tilt_y, last.error[ShiftUnknown::tilt_y])))
+  if (tilted.converged && !raises_spread(patches, result.placement, tilted.placement) &&
+      (clear(tilted.placement.tilt_x, last.error[ShiftUnknown::tilt_x]) ||
+       clear(tilted.placement.tilt_y, last.error[ShiftUnknown::tilt_y])))
     result = tilted;
 }
 
@@ -196,10 +219,16 @@ std::size_t shared_cells(const std::vector<Patch>& patches, const Placement& pla
   return count;
 }
 
-/// What is said in the end. A placement at which the surveys share less than half of what they did is not believed.
+/// What is said in the end. A placement at which the surveys share less than half of what they did is not believed, and
+/// one at which stable ground is spread more than it was is left for the height alone.
 Coregistration told(const std::vector<Patch>& patches, const Placement& start, Coregistration result) {
-  result.unaligned = residuals_of(stable_misfit(patches, start));
-  const std::vector<double> rest = stable_misfit(patches, result.placement);
+  if (raises_spread(patches, start, result.placement)) {
+    result.placement = start;
+    result.placement.z = -median(stable_misfit(patches, start));
+    if (raises_spread(patches, start, result.placement)) result.placement = start;
+  }
+  const auto [was, rest] = shared_misfits(patches, start, result.placement);
+  result.unaligned = residuals_of(was);
   result.known =
       rest.size() >= least_cells && 2 * shared_cells(patches, result.placement) > shared_cells(patches, start);
   result.aligned = residuals_of(rest);

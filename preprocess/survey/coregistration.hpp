@@ -39,7 +39,8 @@ inline constexpr std::size_t least_cells = 100;
 /// iteration, until it moves by less than a thousandth of a cell; then the shift again with each band of wavelengths
 /// weighed by its noise (see refined_shift()). Starts from the whole-cell shift of least NMAD within 16 cells. In
 /// between, connected cells that changed by more than three NMAD are taken out of the stable ground, so that an
-/// unmapped slide does not pull. A tilt smaller than three times its error is left out. Throws DataError where heights
+/// unmapped slide does not pull. A tilt smaller than three times its error is left out, and so is a correction that
+/// raises NMAD or median size of the misfit of the stable cells, but for the height. Throws DataError where heights
 /// look like feet. Not known where fewer than least_cells are stable, or where changes take more than half of what is
 /// neither steep nor rough nor in a polygon.
 Coregistration coregister(std::vector<Patch>& patches, bool tilt, const std::filesystem::path& after_file);

@@ -15,6 +15,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
+#include "preprocess/survey/shifted_parts.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
@@ -227,10 +228,14 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
     s.ignored = read_valid_polygons(options.difference.ignore, s.grid.crs_wkt, "ignore");
   const double given = options.difference.sigma;
   s.errors = ErrorModel::of(given);
-  if (how.mode == Alignment::off && given > 0) return s;
   std::vector<Patch> patches = patches_of(s.before, s.after, s.grid);
+  if (how.mode == Alignment::off && given > 0) {
+    judge_shifted_parts(patches, {}, s.after.file);
+    return s;
+  }
   find_stable(patches, changed_ground(s, how.changed));
   s.fit = coregister(patches, true, s.after.file);
+  judge_shifted_parts(patches, s.fit.known ? s.fit.placement : Placement{}, s.after.file);
   if (!s.fit.known && how.mode == Alignment::apply) refuse_alignment(s, s.grid.count());
   s.applied = how.mode == Alignment::apply;
   if (how.mode != Alignment::off) say_alignment(s);

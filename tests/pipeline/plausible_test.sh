@@ -69,6 +69,36 @@ test_other_vertical_datums_are_refused_by_name_in_both_stages() {
   expect_exit 0 postprocess
 }
 
+# wide_grid FILE EXPRESSION: as grid() of scene.sh, 60 x 60 cells.
+wide_grid() {
+  awk "BEGIN {
+    printf \"ncols 60\nnrows 60\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n\"
+    for (j = 59; j >= 0; --j) for (i = 0; i < 60; ++i) {
+      x = 10 * i + 5; y = 10 * j + 5
+      printf \"%s%s\", $2, i == 59 ? \"\n\" : \" \"
+    }
+  }" >"$1"
+}
+
+# A mosaic of two flights: its east, a step, a stripe or a tile lies lower, and is no slide.
+test_shifted_part_of_a_survey_is_refused_by_name() {
+  scene
+  local ground='0.3 * x + 4 * sin(y / 40)'
+  wide_grid before.asc "$ground"
+  local part
+  for part in '(i >= 35)' '(i >= 30 && i < 42)' '(i + j > 60)' '(i >= 30 && j >= 30)'; do
+    wide_grid after.asc "$ground - 4 * $in_source - 2.5 * $part"
+    expect_exit 3 preprocess
+    expect_words 'm lower than what is around' 'accept = ["shifted-part"] in [preprocess]'
+    expect_exit 3 "$bin/talus" new before.asc after.asc --recipe new/recipe.toml
+    expect_words 'm lower than what is around'
+    expect_no_file new
+  done
+  sed -i 's/^\[preprocess\]/&\naccept = ["shifted-part"]/' recipe.toml
+  expect_exit 0 preprocess
+  expect_words 'accepted, "shifted-part"'
+}
+
 test_mass_that_its_weight_squashes_is_refused_by_name() {
   scene_with solve.material 'youngs_modulus_Pa = 1.0e4'
   expect_exit 3 solve
