@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
@@ -148,10 +150,12 @@ void run(StageContext& context, bool difference) {
   if (difference) return run_difference(context, options);
   auto ensemble = plan_ensemble(context.recipe, options);
   SurveyMemory memory;
-  EnsembleBase base{options, read_scene(options, &memory), memory, {}, {}, {}, {}};
-  auto prepared = prepare(resolved(options), base.scene, context.check_only ? Points::counted : Points::seeded);
+  SceneRasters scene = read_scene(options, ensemble ? &memory : nullptr);
+  std::optional<EnsembleBase> base;
+  if (ensemble) base.emplace(EnsembleBase{options, scene, memory, {}, {}, {}, {}});
+  auto prepared = prepare(resolved(options), std::move(scene), context.check_only ? Points::counted : Points::seeded);
   report(prepared);
-  if (ensemble) look_at_ensemble(context, *ensemble, base, prepared.domain.layer_height);
+  if (ensemble) look_at_ensemble(context, *ensemble, *base, prepared.domain.layer_height);
   if (context.check_only) return;
   stop_if_interrupted("writing the domain");
   const Facts inputs = checksums_of(prepared.inputs), facts = facts_of(prepared);
@@ -160,21 +164,25 @@ void run(StageContext& context, bool difference) {
   prepared.domain.findings = findings_so_far();
   write_survey_files(context, prepared, marks);
   write_obstacles(context, prepared);
-  base.inputs = inputs;
-  base.marks = marks;
-  if (!prepared.obstacles.empty())
-    base.checksums = {{obstacles_checksum, fact(prepared.domain.provenance, obstacles_checksum)}};
-  base.obstacles = prepared.domain.obstacles;
-  if (ensemble)
-    write_ensemble(context, *ensemble, base);
-  else
+  if (ensemble) {
+    base->inputs = inputs;
+    base->marks = marks;
+    if (!prepared.obstacles.empty())
+      base->checksums = {{obstacles_checksum, fact(prepared.domain.provenance, obstacles_checksum)}};
+    base->obstacles = prepared.domain.obstacles;
+    write_ensemble(context, *ensemble, *base);
+    base.reset();
+  } else {
     remove_members({context.out}, nullptr);
+  }
   const auto file = context.out / "domain.vdb";
   context.results.push_back(file);
   Facts told{{"id", fact(marks, domain_id)}};
   told.insert(told.end(), facts.begin(), facts.end());
   write_used_recipe(context, stage(), used_tables(context.recipe, true), prepared.inputs, told);
-  write_domain(file, prepared.domain);  // last: where it lies, everything is there
+  const Domain domain = std::move(prepared.domain);
+  prepared = {};               // what the survey left is not needed where most memory is
+  write_domain(file, domain);  // last: where it lies, everything is there
 }
 
 std::string template_of_tables() {

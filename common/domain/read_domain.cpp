@@ -96,7 +96,8 @@ typename Grid::Ptr grid_named(const fs::path& file, const Contents& contents, co
   refuse(file, "not a whole domain", std::string("the grid \"") + name + "\" is missing");
 }
 
-Raster sheet(const fs::path& file, const Contents& contents, const char* name, const MapGrid& map) {
+/// The values of a grid, which goes: it takes eight times the room, as most of its leaves' layers are empty.
+Raster take_sheet(const fs::path& file, const Contents& contents, const char* name, const MapGrid& map) {
   const auto grid = grid_named<openvdb::DoubleGrid>(file, contents, name);
   const openvdb::CoordBBox cells(openvdb::Coord(0, 0, 0), openvdb::Coord(map.columns - 1, map.rows - 1, 0));
   if (const auto box = grid->evalActiveVoxelBoundingBox(); !box.empty() && !cells.isInside(box))
@@ -107,6 +108,7 @@ Raster sheet(const fs::path& file, const Contents& contents, const char* name, c
   for (int row = 0; row < map.rows; ++row)
     for (int column = 0; column < map.columns; ++column)
       if (accessor.probeValue(openvdb::Coord(column, row, 0), value)) raster.at(column, row) = value;
+  grid->clear();
   return raster;
 }
 
@@ -204,14 +206,14 @@ Domain assemble(const fs::path& file, const Contents& contents) {
                  facts.get<double>("south_m"), facts.get<double>("cell_m"), facts.text("crs_wkt")};
   domain.layer_height = facts.get<double>("layer_height_m");
   check_domain_grid(file, domain.grid, domain.layer_height);
-  domain.terrain = sheet(file, contents, layout::terrain, domain.grid);
-  domain.before = sheet(file, contents, layout::before, domain.grid);
-  domain.release_thickness = sheet(file, contents, layout::release_thickness, domain.grid);
+  domain.terrain = take_sheet(file, contents, layout::terrain, domain.grid);
+  domain.before = take_sheet(file, contents, layout::before, domain.grid);
+  domain.release_thickness = take_sheet(file, contents, layout::release_thickness, domain.grid);
   for (const auto& grid : *contents.grids) {
     const std::string name = grid->getName();
     if (name.rfind(layout::bed_prefix, 0) != 0) continue;
     domain.bed.emplace_back(name.substr(std::string(layout::bed_prefix).size()),
-                            sheet(file, contents, name.c_str(), domain.grid));
+                            take_sheet(file, contents, name.c_str(), domain.grid));
   }
   for (std::size_t i = 0; i < facts.count("releases"); ++i)
     domain.release_names.push_back(facts.text(layout::numbered("release_name", i)));

@@ -181,25 +181,30 @@ void verify(const fs::path& partial, const fs::path& file, const Domain& domain,
   if (!same) throw DataError(write_fault(file, reason));
 }
 
+/// Writes the grids; none of them is left in memory.
+void write_all(const fs::path& partial, const fs::path& file, const Domain& domain, const ActiveCells& active) {
+  const double bottom = bottom_of(domain.terrain);
+  openvdb::GridPtrVec grids{
+      point_grid(domain, bottom),
+      value_sheet(domain, bottom, domain.terrain, layout::terrain),
+      value_sheet(domain, bottom, domain.before, layout::before),
+      value_sheet(domain, bottom, domain.release_thickness, layout::release_thickness),
+      sheet<openvdb::MaskGrid>(domain, bottom, domain.terrain, layout::inside, [](double) { return true; }),
+      active_mask(domain, bottom, active)};
+  for (const auto& [name, raster] : domain.bed)
+    grids.push_back(sheet<openvdb::DoubleGrid>(domain, bottom, raster, (layout::bed_prefix + name).c_str(),
+                                               [](double cell) { return cell; }));
+  write_grids(partial, file, grids, metadata_of(domain));
+}
+
 }  // namespace
 
 void write_domain(const fs::path& file, const Domain& domain) {
   openvdb::initialize();
   PendingFile pending(file);
   const ActiveCells active = active_cells(domain.grid, domain.layer_height, domain.points);
-  const double bottom = bottom_of(domain.terrain);
   try {
-    openvdb::GridPtrVec grids{
-        point_grid(domain, bottom),
-        value_sheet(domain, bottom, domain.terrain, layout::terrain),
-        value_sheet(domain, bottom, domain.before, layout::before),
-        value_sheet(domain, bottom, domain.release_thickness, layout::release_thickness),
-        sheet<openvdb::MaskGrid>(domain, bottom, domain.terrain, layout::inside, [](double) { return true; }),
-        active_mask(domain, bottom, active)};
-    for (const auto& [name, raster] : domain.bed)
-      grids.push_back(sheet<openvdb::DoubleGrid>(domain, bottom, raster, (layout::bed_prefix + name).c_str(),
-                                                 [](double cell) { return cell; }));
-    write_grids(pending.path(), file, grids, metadata_of(domain));
+    write_all(pending.path(), file, domain, active);
   } catch (const openvdb::Exception& error) {
     throw DataError(write_fault(file, error.what()));
   }

@@ -16,6 +16,7 @@
 #include "common/gis/raster_source.hpp"
 #include "common/gis/resampling.hpp"
 #include "common/stage/findings.hpp"
+#include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -143,6 +144,23 @@ const fs::path& RasterFile::file() const { return parts_->source.file(); }
 const MapGrid& RasterFile::grid() const { return parts_->grid; }
 const DeclaredHeights& RasterFile::heights() const { return parts_->source.heights(); }
 
+/// Some lines at a time, so that the cells are not in memory twice.
+void RasterFile::each_row(const CellWindow& w, const std::function<void(int row, const double* values)>& visit) const {
+  const MapGrid& whole = parts_->grid;
+  const auto width = static_cast<std::size_t>(w.columns);
+  const int at_once = std::max(1, static_cast<int>((std::size_t{1} << 20) / width));
+  Progress progress;
+  for (int done = 0; done < w.rows; done += at_once) {
+    stop_if_interrupted("reading " + file().string());
+    if (progress.due()) progress.update(fmt::format("{} {:.0f} %", file().string(), 100.0 * done / w.rows));
+    const int count = std::min(at_once, w.rows - done);
+    const int line = parts_->north_first ? whole.rows - w.row - w.rows + done : w.row + done;
+    const std::vector<double> lines = parts_->lines(w.column, line, w.columns, count);
+    for (int l = 0; l < count; ++l)
+      visit(parts_->north_first ? w.rows - 1 - done - l : done + l, &lines[static_cast<std::size_t>(l) * width]);
+  }
+}
+
 Raster RasterFile::read(const CellWindow& w) const {
   const MapGrid& whole = parts_->grid;
   refuse_outside(whole, w);
@@ -153,21 +171,33 @@ Raster RasterFile::read(const CellWindow& w) const {
   raster.values.resize(raster.grid.count());
   if (raster.values.empty()) return raster;
   const std::size_t before = parts_->source.undeclared_nodata();
-  // Some lines at a time, so that the cells are not in memory twice.
-  const auto width = static_cast<std::size_t>(w.columns);
-  const int at_once = std::max(1, static_cast<int>((std::size_t{1} << 20) / width));
-  for (int done = 0; done < w.rows; done += at_once) {
-    const int count = std::min(at_once, w.rows - done);
-    const int line = parts_->north_first ? whole.rows - w.row - w.rows + done : w.row + done;
-    const std::vector<double> lines = parts_->lines(w.column, line, w.columns, count);
-    for (int l = 0; l < count; ++l) {
-      const int row = parts_->north_first ? w.rows - 1 - done - l : done + l;
-      std::copy_n(lines.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(l) * width), width,
-                  raster.values.begin() + static_cast<std::ptrdiff_t>(raster.grid.index(0, row)));
-    }
-  }
+  each_row(w, [&](int row, const double* values) {
+    std::copy_n(values, w.columns, raster.values.begin() + static_cast<std::ptrdiff_t>(raster.grid.index(0, row)));
+  });
   parts_->warn_of_undeclared(before, parts_->is_whole(w));
   return raster;
+}
+
+Raster RasterFile::read_content() const {
+  const MapGrid& whole = parts_->grid;
+  int west = whole.columns, east = -1, south = whole.rows, north = -1;
+  const std::size_t before = parts_->source.undeclared_nodata();
+  each_row({0, 0, whole.columns, whole.rows}, [&](int row, const double* values) {
+    for (int column = 0; column < whole.columns; ++column) {
+      if (std::isnan(values[column]) || values[column] == 0) continue;
+      west = std::min(west, column);
+      east = std::max(east, column);
+      south = std::min(south, row);
+      north = std::max(north, row);
+    }
+  });
+  parts_->warn_of_undeclared(before, true);
+  if (east < 0) return read();
+  west = std::max(west - 1, 0);
+  south = std::max(south - 1, 0);
+  east = std::min(east + 1, whole.columns - 1);
+  north = std::min(north + 1, whole.rows - 1);
+  return read({west, south, east - west + 1, north - south + 1});
 }
 
 Raster RasterFile::read() const {

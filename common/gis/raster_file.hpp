@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,8 +51,13 @@ class RasterFile {
   /// All cells. Throws DataError also when none holds a value.
   Raster read() const;
 
+  /// The cells around all that are neither nodata nor 0, with a rim of one cell, of a release on a large map; all cells
+  /// where there are none. The file is read twice. Throws as read() does.
+  Raster read_content() const;
+
  private:
   struct Parts;
+  void each_row(const CellWindow& window, const std::function<void(int row, const double* values)>& visit) const;
   std::unique_ptr<Parts> parts_;
 };
 

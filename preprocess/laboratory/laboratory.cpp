@@ -10,6 +10,7 @@
 #include "common/gis/resampling.hpp"
 #include "preprocess/options/laboratory.hpp"
 #include "preprocess/particles/seed.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -77,9 +78,9 @@ Raster cover_of(const MapGrid& grid, const BoxOptions& box) {
 Raster laboratory_ground(const Options& options) {
   const LaboratoryOptions& lab = options.laboratory;
   const MapGrid grid = laboratory_grid(options);
-  constexpr double bytes_per_cell = 100;
   require_told_apart(grid, "[preprocess.laboratory]");
-  require_room(grid.columns, grid.rows, bytes_per_cell, "[preprocess.laboratory]", "Give fewer columns or rows");
+  require_room(grid.columns, grid.rows, bytes_per_cell(options), "[preprocess.laboratory]",
+               "Give fewer columns or rows");
   Raster ground{grid, std::vector<double>(grid.count())};
   each_cell(grid, [&](int column, int row) {
     ground.at(column, row) =

@@ -131,7 +131,7 @@ void warn_of_holes(const Raster& thickness, const std::filesystem::path& file) {
 }
 
 Raster from_raster(const ReleaseOptions& options, const MapGrid& grid, const std::filesystem::path& model) {
-  const Raster thickness = read_raster(options.thickness_raster);
+  const Raster thickness = RasterFile(options.thickness_raster).read_content();
   require_comparable_crs(thickness.grid.crs_wkt, options.thickness_raster, grid.crs_wkt, model.string());
   refuse_negative(thickness, options.thickness_raster);
   warn_of_holes(thickness, options.thickness_raster);

@@ -28,10 +28,12 @@ ReadOptions reading(const Options& options) { return dem_reading(options.working
 
 std::vector<Raster> align(const std::vector<const Elevation*>& dems, const Options& options,
                           std::vector<Filled>* filled = nullptr) {
-  return align(
-      dems,
-      AlignRequest{.grid = grid_request(options), .edge_nodata = options.grid.edge_nodata, .voids = options.voids},
-      filled);
+  return align(dems,
+               AlignRequest{.grid = grid_request(options),
+                            .edge_nodata = options.grid.edge_nodata,
+                            .voids = options.voids,
+                            .bytes_per_cell = bytes_per_cell(options)},
+               filled);
 }
 
 SceneRasters from_source(Raster before, Source source) {

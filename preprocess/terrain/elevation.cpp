@@ -40,8 +40,9 @@ Raster coarsened(const Raster& raster, const MapGrid& grid, Interpolation interp
   fine.cell = grid.cell / parts;
   fine.columns = grid.columns * parts;
   fine.rows = grid.rows * parts;
-  Raster result = resample_elevation(
-      same_lattice(raster.grid, fine) ? raster : resample_elevation(raster, fine, interpolation), grid);
+  Raster result = same_lattice(raster.grid, fine)
+                      ? resample_elevation(raster, grid)
+                      : resample_elevation(resample_elevation(raster, fine, interpolation), grid);
   keep_voids(raster, result);
   return result;
 }

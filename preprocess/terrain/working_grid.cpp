@@ -217,6 +217,13 @@ void look_at_spikes(const Elevation& dem, Raster& raster, const VoidOptions& opt
 
 }  // namespace
 
+double bytes_per_cell(const Options& options) {
+  const auto releases = static_cast<double>(options.release.size() + options.erodible.size());
+  const bool by_place = !options.bed.zones.empty() || !options.bed.polygons.empty();  // which set mu and xi
+  const double beds = static_cast<double>(options.bed.rasters.size()) + (by_place ? 2 : 0);
+  return std::max(240 + 72 * beds, 72 + 8 * releases);
+}
+
 GridRequest grid_request(const Options& options) {
   const GridOptions& g = options.grid;
   return {.crs = options.working_crs, .spacing = g.spacing, .extent = g.extent};
@@ -290,8 +297,7 @@ void require_data(const Raster& raster, const std::filesystem::path& file) {
 std::vector<Raster> align(const std::vector<const Elevation*>& dems, const AlignRequest& request,
                           std::vector<Filled>* filled) {
   const MapGrid grid = working_grid(dems, request.grid);
-  constexpr double bytes_per_cell = 100;  // surfaces, bed, releases, marks and errors of a cell, at least
-  require_room(grid.columns, grid.rows, bytes_per_cell, "the working grid",
+  require_room(grid.columns, grid.rows, request.bytes_per_cell, "the working grid",
                "Take a larger spacing_m, or a smaller part: extent_m in [preprocess.grid]");
   std::vector<Raster> rasters;
   for (const Elevation* dem : dems) {

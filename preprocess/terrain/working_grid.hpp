@@ -50,11 +50,18 @@ void require_data(const Raster& raster, const std::filesystem::path& file);
 /// as DEMs need that were reprojected or triangulated and whose data do not end along the grid's lines.
 CellWindow trimmed(const MapGrid& grid, const std::vector<char>& empty, double allowed);
 
+/// What a scene takes for a cell of the working grid where it takes most [bytes]. While domain.vdb is written that is
+/// 24 for its three surfaces and 64 for each of them as a sheet of OpenVDB, whose leaves are eight layers deep, with
+/// masks and buffers 235 to 240 measured (10^6 to 5 x 10^6 cells); a raster of the bed adds 72. Before, releases
+/// are kept each by itself.
+double bytes_per_cell(const Options& options);
+
 /// How elevation models are brought onto one grid.
 struct AlignRequest {
   GridRequest grid;
   EdgeNodata edge_nodata = EdgeNodata::refuse;
   VoidOptions voids;
+  double bytes_per_cell = 0;  ///< that must be there
 };
 
 /// Brings DEMs onto the working grid. Where one was reprojected or triangulated, the grid is trimmed to where it has
