@@ -103,13 +103,21 @@ void warn_of_other_title(const StageContext& context, const RunSummary& run) {
                      run.title, run.scene, context.recipe.title(), context.recipe.scene_name()));
 }
 
+/// The options as the recipe gave them: files that from_preprocess found are no keys of it.
+Options asked_for(Options options) {
+  if (!options.survey.from_preprocess) return options;
+  options.survey.difference.clear();
+  options.survey.sigma.clear();
+  return options;
+}
+
 std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
   if (job.thalweg.given) inputs.push_back(vector_source(job.options.thalweg).file);
   std::ranges::transform(inputs, inputs.begin(), file_behind);
   for (const fs::path& polygons : with_sidecars({job.options.buildings.polygons})) inputs.push_back(polygons);
-  return used_recipe(context, stage(), recipe::to_used_toml(job.options, "postprocess"), inputs,
+  return used_recipe(context, stage(), recipe::to_used_toml(asked_for(job.options), "postprocess"), inputs,
                      {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
 

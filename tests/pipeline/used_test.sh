@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: The Talus authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What was used is a recipe: every *.used.toml passes --check, gives the same results under the same id, and two runs of
+# any recipe can be compared.
+source "$(dirname "${BASH_SOURCE[0]}")/scene.sh"
+
+# used_of STAGE: its used recipe passes --check, its results are up to date by it, and where the stage runs from it, it
+# states the same tables under the same ids.
+used_of() {
+  local stage=$1
+  cp out/$stage.used.toml used.toml
+  expect_exit 0 "$bin/talus-$stage" used.toml --out out --check
+  expect_exit 0 "$bin/talus-$stage" used.toml --out out --if-outdated
+  expect_words "is up to date"
+  expect_exit 0 "$bin/talus-$stage" used.toml --out out
+  diff <(grep -v '^#' used.toml) <(grep -v '^#' out/$stage.used.toml) >&2 || fail "$stage.used.toml gives another"
+  [[ $(grep '^# table: ' used.toml) == "$(grep '^# table: ' out/$stage.used.toml)" ]] || fail "the tables have another id"
+}
+
+# used_is_a_recipe RECIPE: all stages run from it, and from what they say that they used.
+used_is_a_recipe() {
+  local stage
+  rm -rf out
+  for stage in preprocess solve postprocess; do expect_exit 0 "$bin/talus-$stage" "$1" --out out; done
+  for stage in preprocess solve postprocess; do used_of $stage; done
+}
+
+# with_survey LINES...: the scene scored against what these lines name.
+with_survey() {
+  scene
+  sed -i '/^\[postprocess.survey/,$d' recipe.toml
+  printf '%s\n' "[postprocess.survey]" "$@" >>recipe.toml
+}
+
+test_each_way_to_name_a_survey() {
+  local way
+  for way in 'from_preprocess = true' 'thickness = "survey.asc"' 'difference = "change.asc"' \
+    $'after_dem = "after.asc"\nbefore_dem = "before.asc"' $'thickness = "survey.asc"\nsigma_m = 0.3' \
+    $'difference = "change.asc"\nsigma = "sigma.asc"'; do
+    with_survey "$way"
+    grid change.asc "2 * (i >= 7 && i < 11 && j >= 8 && j < 12)"
+    grid sigma.asc 0.2
+    used_is_a_recipe recipe.toml
+    rm -rf other
+    cp -a out other
+    expect_exit 0 "$bin/talus" compare out other
+    expect_exit 0 "$bin/talus" compare other out
+  done
+}
+
+test_what_talus_new_writes() {
+  local known valley=$TALUS_SOURCE/data_samples/valley
+  for known in no yes; do
+    rm -rf new.toml run other
+    expect_exit 0 "$bin/talus" new "$valley/before_dem.tif" "$valley/after_dem.tif" --recipe new.toml
+    sed -i 's/^end_time_s.*/end_time_s = 2.0/' new.toml
+    [[ $known == no ]] || printf '\n[preprocess.difference]\nbefore_sigma_m = 0.1\nafter_sigma_m = 0.1\n' >>new.toml
+    expect_exit 0 "$bin/talus" run new.toml --out run --on cpu
+    cp -a run other
+    expect_exit 0 "$bin/talus" compare run other
+    expect_exit 0 "$bin/talus-postprocess" run/postprocess.used.toml --out run --check
+  done
+}
+
+test_each_template() {
+  scene
+  local stage program
+  for stage in preprocess solve postprocess; do
+    program=$bin/talus-$stage
+    "$program" --template >template || fail "no template"
+    { sed -n '/^\[scene\]/,/^$/p' recipe.toml && grep -v '^#' template; } >of_$stage.toml
+  done
+  sed -i 's/^before_dem = ""/before_dem = "before.asc"/; s/^after_dem = ""/after_dem = "after.asc"/' of_preprocess.toml
+  sed -i 's/^end_time_s.*/end_time_s = 1.0/' of_solve.toml
+  for stage in preprocess solve postprocess; do
+    expect_exit 0 "$bin/talus-$stage" of_$stage.toml --out out
+    used_of $stage
+  done
+}
+
+# What needs no file that is not in the repository; elevation models are made by data_samples.
+test_pipelines_of_the_repository() {
+  local name recipe looked=0
+  for recipe in "$TALUS_SOURCE"/pipelines/*/recipe.toml; do
+    name=$(basename "$(dirname "$recipe")")
+    if grep -q '^\[slides\]' "$recipe"; then continue; fi   # [preprocess] of slides names what each slide sets
+    rm -rf out
+    "$bin/talus-preprocess" "$recipe" --out out --check >stdout 2>stderr || continue   # its data is not here
+    expect_exit 0 "$bin/talus-preprocess" "$recipe" --out out
+    used_of preprocess
+    looked=$((looked + 1))
+  done
+  [[ $looked -ge 3 ]] || fail "only $looked pipelines run from the repository alone"
+}
+
+run_test "$@"
