@@ -56,8 +56,7 @@ void write_survey_files(StageContext& context, const Prepared& prepared, const F
   const auto folder = context.out / "survey";
   std::vector<std::string> lines;
   std::vector<std::filesystem::path> files;
-  std::error_code none_there;
-  std::filesystem::remove(folder / "survey.json", none_there);  // of an earlier recipe, perhaps
+  remove_for_good(folder / "survey.json");  // of an earlier recipe, perhaps
   if (prepared.survey) files = write_survey(folder, *prepared.survey, &prepared, marks, lines);
   if (prepared.sliding_surface) files = write_source(folder, prepared);
   for (const std::string& line : lines) log_info(line);
@@ -87,8 +86,7 @@ Options read_options(const StageContext& context) { return context.recipe.read<O
 void write_obstacles(StageContext& context, Prepared& prepared) {
   const auto bodies = context.out / "obstacles.vdb";
   if (prepared.obstacles.empty()) {
-    std::error_code none_there;
-    std::filesystem::remove(bodies, none_there);
+    remove_for_good(bodies);
     return;
   }
   write_level_sets(bodies, prepared.obstacles, prepared.obstacle_voxel);

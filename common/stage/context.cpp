@@ -14,7 +14,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
@@ -128,7 +127,7 @@ void Context::remove_lock(const std::filesystem::path& file) {
 
 bool Context::has_locked(const std::filesystem::path& folder) const {
   const std::lock_guard lock(mutex_);
-  return std::any_of(locks_.begin(), locks_.end(), [&](const Lock& one) { return one.file == lock_file_of(folder); });
+  return std::any_of(locks_.begin(), locks_.end(), [&](const Lock& one) { return one.file.parent_path() == folder; });
 }
 
 bool Context::holds_a_lock() const {

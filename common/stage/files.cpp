@@ -25,6 +25,7 @@
 #include <unistd.h>
 
 #include "common/stage/context.hpp"
+#include "common/stage/inside.hpp"
 #include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
 #include "common/whole_text.hpp"
@@ -36,6 +37,7 @@ namespace {
 /// Output folders that this process has locked: what it knows of a folder from an earlier lock may be old.
 std::atomic<unsigned> locks_taken{0};
 
+/// What a file is that is no plain file; null of a plain one, a folder and one that is not there.
 const char* kind_of(fs::file_type type) {
   switch (type) {
     case fs::file_type::fifo: return "it is a pipe";
@@ -139,6 +141,10 @@ std::string holder(int descriptor) {
   return "another process, which has not said its name";
 }
 
+[[noreturn]] void refuse_to_replace(const fs::path& path, const char* kind) {
+  refuse_file(path, "cannot be written", kind, "Remove it, or write elsewhere with --out DIR");
+}
+
 [[noreturn]] void refuse_second(const fs::path& file, int descriptor) {
   const std::string name = holder(descriptor);
   ::close(descriptor);
@@ -147,12 +153,23 @@ std::string holder(int descriptor) {
                    "Wait for it or end it, or write elsewhere with --out DIR"});
 }
 
+/// Opens the file of a lock. What a link, a pipe or another name of the same file leads to is not written into.
+int open_lock(const fs::path& file) {
+  require_replaceable(file);
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  if (descriptor < 0 && errno == ELOOP) require_replaceable(file);
+  if (descriptor < 0) refuse_output_folder(file.parent_path(), reason_of(errno));
+  struct stat found {};
+  if (::fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode) && found.st_nlink <= 1) return descriptor;
+  ::close(descriptor);
+  refuse_to_replace(file, found.st_nlink > 1 ? "it is a file of several names" : "it is no plain file");
+}
+
 /// Locks the file of this name. One that its holder removed in between is no lock for those who come later. `is_held`
 /// stays false where the file system knows no locks.
 int lock(const fs::path& file, bool& is_held) {
   while (true) {
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor < 0) refuse_output_folder(file.parent_path(), reason_of(errno));
+    const int descriptor = open_lock(file);
     int code = 0;
     do code = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
     while (code == EINTR);
@@ -193,6 +210,27 @@ void require_plain(const fs::path& file) {
   const char* kind = kind_of(fs::status(file, unknown).type());
   if (kind != nullptr)
     refuse_file(file, "cannot be read", kind, "Give a plain file: it is read from several places, some of them twice");
+}
+
+void require_inside(const fs::path& path) {
+  fs::path link;
+  std::error_code unknown;
+  for (fs::path way = path.parent_path(); way.has_relative_path(); way = way.parent_path()) {
+    if (context().has_locked(way)) {
+      if (!link.empty()) refuse_to_replace(link, "it is a link: results stay in --out");
+      return;
+    }
+    if (fs::is_symlink(fs::symlink_status(way, unknown))) link = way;
+  }
+}
+
+void require_replaceable(const fs::path& file) {
+  require_inside(file);
+  std::error_code unknown;
+  const fs::file_type type = fs::symlink_status(file, unknown).type();
+  if (type == fs::file_type::symlink) refuse_to_replace(file, "it is a link: results stay in --out");
+  if (type == fs::file_type::directory) refuse_to_replace(file, "it is a folder");
+  if (const char* kind = kind_of(type); kind != nullptr) refuse_to_replace(file, kind);
 }
 
 void require_read(const std::ios& stream, const fs::path& file) {
@@ -249,6 +287,7 @@ void refuse_output_folder(const fs::path& folder, const std::string& reason) {
 PendingFile::PendingFile(fs::path final_path)
     : final_(std::move(final_path)),
       partial_(final_.parent_path() / fmt::format("{}{}.partial", stem_of_partials(final_), process_word())) {
+  require_replaceable(final_);
   doom(partial_);
   if (holds_output_lock()) sweep(final_);
 }
@@ -271,6 +310,7 @@ void PendingFile::commit() {
 }
 
 void make_folder(const fs::path& folder) {
+  require_inside(folder / "");
   if (fs::is_directory(folder)) return;
   const fs::path above = folder.parent_path();
   if (!above.empty() && above != folder) make_folder(above);
@@ -283,6 +323,7 @@ void make_folder(const fs::path& folder) {
 }
 
 void remove_for_good(const fs::path& file) {
+  require_inside(file);
   std::error_code none_there;
   if (fs::remove(file, none_there)) sync_folder(file.parent_path());
 }

@@ -18,6 +18,7 @@
 #include "common/stage/context.hpp"
 #include "common/stage/files.hpp"
 #include "common/stage/findings.hpp"
+#include "common/stage/inside.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
@@ -202,6 +203,19 @@ std::string command_of(const Stage& stage, const StageCall& call) {
   return command_text(words);
 }
 
+/// Throws, before long work begins, where a result could not take its name at the end. A fault of the recipe is left to
+/// the stage.
+void check_names_of_results(const Stage& stage, const StageContext& context) {
+  if (!stage.depends) return;
+  std::vector<fs::path> results;
+  try {
+    results = stage.depends(context).results;
+  } catch (const Error&) {
+    return;
+  }
+  for (const fs::path& file : results) require_replaceable(file);
+}
+
 /// What the results are going to be made of. A fault of recipe or inputs is left to the stage, which knows more of it.
 Ingredients ingredients_before(const Stage& stage, const StageContext& context) {
   if (!stage.depends || !stage.used_toml) return {};
@@ -245,6 +259,7 @@ std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
   if (!opened.part.empty() || !context().has_locked(opened.out)) lock.emplace(opened.out, stage.name, opened.part);
   if (call.if_outdated)
     if (auto results = fresh_results(stage, opened)) return *results;
+  check_names_of_results(stage, opened);
   opened.made_of = ingredients_before(stage, opened);
   found.settled([&] { stage.run(opened); });
   if (has_made_results(stage, opened)) note_results(stage, opened);

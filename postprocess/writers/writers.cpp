@@ -7,6 +7,7 @@
 
 #include <fnmatch.h>
 
+#include "common/stage/inside.hpp"
 #include "common/stage/machine.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/options/writer.hpp"
@@ -53,11 +54,13 @@ namespace fs = std::filesystem;
 namespace {
 
 void remove_matching(const fs::path& out, const std::string& pattern) {
+  require_inside(out / pattern);
   const fs::path folder = (out / pattern).parent_path();
   std::error_code none_there;
   Files old;
   for (const auto& entry : fs::directory_iterator(folder, none_there))
-    if (entry.is_regular_file() && matches({pattern}, fs::relative(entry.path(), out, none_there).generic_string()))
+    if (fs::is_regular_file(entry.symlink_status(none_there)) &&
+        matches({pattern}, fs::relative(entry.path(), out, none_there).generic_string()))
       old.push_back(entry.path());
   for (const fs::path& file : old) fs::remove(file, none_there);
   if (folder != out) fs::remove(folder, none_there);  // only an empty one

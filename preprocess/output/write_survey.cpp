@@ -49,9 +49,8 @@ double correlation_length(const Survey& survey, const SurveyedSlide* slide) {
 }
 
 void remove_with_style(fs::path file) {
-  std::error_code none_there;
-  fs::remove(file, none_there);
-  fs::remove(file.replace_extension(".qml"), none_there);
+  remove_for_good(file);
+  remove_for_good(file.replace_extension(".qml"));
 }
 
 /// The rasters over all that both surveys hold, and the volumes, in one walk.

@@ -6,6 +6,7 @@
 
 #include "common/run/hdf5.hpp"
 #include "common/run/sealed_file.hpp"
+#include "common/stage/inside.hpp"
 #include "common/stage/stage.hpp"
 #include "solver/scene/make_scene.hpp"
 
@@ -55,6 +56,7 @@ void FrameStore::clear() {
 }
 
 void FrameStore::drop_others() const {
+  require_inside(folder_ / run_id_);
   std::error_code ignored;
   std::vector<std::filesystem::path> others;
   for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored))

@@ -210,6 +210,62 @@ TEST(OutputLock, the_file_of_a_killed_process_is_no_lock) {
   EXPECT_TRUE(holds(text_of(scratch / ".talus.lock"), {"talus-next (process"}));
 }
 
+/// What stands in the way of a result called `name`, one of each kind; the victim is what a link leads to.
+void put_in_the_way(const std::string& kind, const std::filesystem::path& name, const std::filesystem::path& victim) {
+  if (kind == "it is a link") std::filesystem::create_symlink(victim, name);
+  if (kind == "it is a folder") std::filesystem::create_directory(name);
+  if (kind == "it is a pipe") {
+    ASSERT_EQ(mkfifo(name.c_str(), 0600), 0);
+  }
+  if (kind == "it is a file of several names") std::filesystem::create_hard_link(victim, name);
+}
+
+TEST(OutputLock, follows_nothing_that_stands_under_its_name) {
+  const Scratch elsewhere;
+  const auto victim = elsewhere.write("victim", "x");
+  for (const char* kind : {"it is a link", "it is a folder", "it is a pipe", "it is a file of several names"}) {
+    const Scratch scratch;
+    put_in_the_way(kind, scratch / ".talus.lock", victim);
+    EXPECT_TRUE(holds(fault_of<DataError>([&] { const OutputLock lock(scratch.folder(), "talus-first"); }),
+                      {".talus.lock: cannot be written (", kind, "Remove it, or write elsewhere with --out DIR"}));
+    EXPECT_EQ(text_of(victim), "x") << kind;
+  }
+  const Scratch scratch;
+  put_in_the_way("it is a link", scratch / ".talus.lock", elsewhere / "missing");
+  EXPECT_NE(fault_of<DataError>([&] { const OutputLock lock(scratch.folder(), "talus-first"); }), "");
+  EXPECT_FALSE(std::filesystem::exists(elsewhere / "missing"));
+}
+
+TEST(PendingFile, takes_the_name_of_a_plain_file_alone) {
+  const Scratch scratch;
+  const auto victim = scratch.write("victim", "x");
+  for (const char* kind : {"it is a link", "it is a folder", "it is a pipe"}) {
+    const auto name = scratch / ("map" + std::string(kind));
+    put_in_the_way(kind, name, victim);
+    EXPECT_TRUE(holds(fault_of<DataError>([&] { write_text(name, "y"); }), {name.c_str(), kind}));
+  }
+  EXPECT_EQ(text_of(victim), "x");
+  write_text(victim, "y");
+  EXPECT_EQ(text_of(victim), "y");
+}
+
+TEST(OutputFolder, may_be_a_link_and_what_lies_in_it_may_not) {
+  const Scratch scratch, elsewhere;
+  elsewhere.write("old", "x");
+  std::filesystem::create_directory(scratch / "real");
+  std::filesystem::create_directory_symlink(scratch / "real", scratch / "out");
+  const OutputLock lock(scratch / "out", "talus-first");
+  EXPECT_NO_THROW(make_folder(scratch / "out" / "maps" / "more"));
+  EXPECT_NO_THROW(write_text(scratch / "out" / "maps" / "a.tif", "y"));
+  std::filesystem::create_directory_symlink(elsewhere.folder(), scratch / "out" / "survey");
+  for (const auto& path : {scratch / "out" / "survey", scratch / "out" / "survey" / "deep"})
+    EXPECT_TRUE(
+        holds(fault_of<DataError>([&] { make_folder(path); }), {"out/survey: cannot be written (it is a link"}));
+  EXPECT_NE(fault_of<DataError>([&] { write_text(scratch / "out" / "survey" / "new", "y"); }), "");
+  EXPECT_NE(fault_of<DataError>([&] { remove_for_good(scratch / "out" / "survey" / "old"); }), "");
+  EXPECT_EQ(names_in(elsewhere.folder()), std::vector<std::string>{"old"});
+}
+
 TEST(PendingFile, sweeps_what_a_killed_process_left_where_the_folder_is_its_own) {
   const Scratch scratch;
   scratch.write(".map.tif.77-0badcafe.partial", "half");
