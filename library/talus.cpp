@@ -162,7 +162,7 @@ Site prepare(const recipe::Recipe& recipe) {
   preprocess::Prepared prepared = preprocess::prepare(options, preprocess::Points::seeded);
   const Facts inputs = preprocess::checksums_of(prepared.inputs);
   prepared.domain.provenance = preprocess::provenance_of(
-      context_of(recipe), inputs, preprocess::marks_of(recipe, inputs), preprocess::facts_of(prepared));
+      context_of(recipe), inputs, preprocess::marks_of(recipe, options, inputs), preprocess::facts_of(prepared));
   prepared.domain.findings = found.list();
   return {.domain = std::move(prepared.domain),
           .obstacles = std::move(prepared.obstacles),

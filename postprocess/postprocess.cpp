@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/options.hpp"
+#include "common/ensemble/used.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/local_only.hpp"
 #include "common/recipe/dataset_name.hpp"
@@ -103,21 +104,14 @@ void warn_of_other_title(const StageContext& context, const RunSummary& run) {
                      run.title, run.scene, context.recipe.title(), context.recipe.scene_name()));
 }
 
-/// The options as the recipe gave them: files that from_preprocess found are no keys of it.
-Options asked_for(Options options) {
-  if (!options.survey.from_preprocess) return options;
-  options.survey.difference.clear();
-  options.survey.sigma.clear();
-  return options;
-}
-
 std::string used_text(const StageContext& context, const Job& job) {
   auto inputs = job.survey ? job.survey->inputs : std::vector<fs::path>{};
   inputs.insert(inputs.begin(), job.file);
   if (job.thalweg.given) inputs.push_back(vector_source(job.options.thalweg).file);
   std::ranges::transform(inputs, inputs.begin(), file_behind);
   for (const fs::path& polygons : with_sidecars({job.options.buildings.polygons})) inputs.push_back(polygons);
-  return used_recipe(context, stage(), recipe::to_used_toml(asked_for(job.options), "postprocess"), inputs,
+  const std::string tables = recipe::to_used_toml(job.options, "postprocess") + used_ensemble(context.recipe, true);
+  return used_recipe(context, stage(), tables, inputs,
                      {{"run", fact(job.run.summary.provenance, run_id)}, {"CRS", crs_name(job.run.maps.grid.crs_wkt)}});
 }
 
@@ -143,7 +137,8 @@ void run_single(StageContext& context, const Options& options) {
   job.used = [&] { return used_text(context, job); };
   Findings findings("postprocess", job.options.accept);
   const FoundSurvey found = job.options.survey.from_preprocess ? read_found_survey(context.out) : FoundSurvey{};
-  job.options.survey.find_in(context.out, found.error_known);
+  SurveyOptions survey = options.survey;  // those of the job stay as the recipe has them
+  survey.find_in(context.out, found.error_known);
   findings.settled([&] {
     judge_outside(found, context.out);
     job.file = run_file(context, job.options);
@@ -153,7 +148,7 @@ void run_single(StageContext& context, const Options& options) {
     if (job.options.survey.from_preprocess) judge_survey(context, found, job);
     warn_of_other_title(context, job.run.summary);
     check_volume(job.file, job.run);
-    job.survey = read_survey(job.options.survey, job.run.maps, job.options.footprint_threshold,
+    job.survey = read_survey(survey, job.run.maps, job.options.footprint_threshold,
                              heights_in(job.run.summary.provenance, "the surface that the run began with"));
     if (job.survey && !is_accepted(job.run.summary.findings, "swapped-surveys")) judge_order(*job.survey, job.run.maps);
   });
@@ -236,7 +231,7 @@ Stage stage() {
       "  talus-postprocess --template >> scene.toml    all keys with their defaults\n";
   stage.template_toml = [] { return recipe::to_toml(Options{}, "postprocess", true); };
   stage.used_toml = [](const recipe::Recipe& recipe) {
-    return recipe::to_toml(recipe.read<Options>("postprocess"), "postprocess", false);
+    return recipe::to_toml(recipe.read<Options>("postprocess"), "postprocess", false) + used_ensemble(recipe, false);
   };
   stage.flags = {{.name = "--against",
                   .help = "Compare the run in --out with the one in this folder, write OUT/comparison.html, and stop",

@@ -11,6 +11,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
+#include "common/ensemble/used.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/local_only.hpp"
 #include "common/map/statistics.hpp"
@@ -71,7 +72,7 @@ void run_difference(StageContext& context, const Options& options) {
   Findings found("preprocess", options.accept);
   const Survey survey = survey_of(options);
   found.settle();
-  const Facts marks = marks_of(context.recipe, checksums_of({options.before_dem, options.after_dem}));
+  const Facts marks = marks_of(context.recipe, options, checksums_of({options.before_dem, options.after_dem}));
   std::vector<std::string> lines = as_lines(survey);
   if (!context.check_only) context.results = write_survey(context.out / "survey", survey, nullptr, marks, lines);
   for (const std::string& line : lines) log_info(line);
@@ -123,15 +124,13 @@ void look_at_ensemble(const StageContext& context, EnsemblePlan& plan, const Ens
 /// The [preprocess] and, where there are any, the [slides] and the [ensemble] of a recipe, as they are used.
 std::string used_tables(const recipe::Recipe& recipe, bool marked) {
   const SlideOptions slides = slides_of(recipe);
-  const auto options = slides.on() ? shared_options(recipe, slides) : recipe.read<Options>("preprocess");
-  const EnsembleOptions ensemble = ensemble_of(recipe);
-  const auto used = [&](const auto& of, const char* table) {
-    return marked ? recipe::to_used_toml(of, table) : recipe::to_toml(of, table, false);
-  };
-  std::string text = used(options, "preprocess");
-  if (slides.on()) text += "\n" + used(slides, "slides");
-  if (ensemble.on()) text += "\n" + used(ensemble, "ensemble");
-  return text;
+  auto options = slides.on() ? shared_options(recipe, slides) : recipe.read<Options>("preprocess");
+  if (slides.on()) {  // which say themselves what fails
+    options.release.clear();
+    options.source.polygon.clear();
+  }
+  return (marked ? recipe::to_used_toml(options, "preprocess") : recipe::to_toml(options, "preprocess", false)) +
+         used_ensemble(recipe, marked);
 }
 
 /// Many slides over one model, each with a domain of its own.
@@ -157,7 +156,7 @@ void run(StageContext& context, bool difference) {
   if (context.check_only) return;
   stop_if_interrupted("writing the domain");
   const Facts inputs = checksums_of(prepared.inputs), facts = facts_of(prepared);
-  const Facts marks = marks_of(context.recipe, inputs);
+  const Facts marks = marks_of(context.recipe, options, inputs);
   prepared.domain.provenance = provenance_of(context, inputs, marks, facts);
   prepared.domain.findings = findings_so_far();
   write_survey_files(context, prepared, marks);

@@ -13,6 +13,7 @@
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
 #include "common/ensemble/counts.hpp"
+#include "common/ensemble/used.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
@@ -160,7 +161,8 @@ void solve(StageContext& context, const SolveFlags& flags) {
   SolveOptions options = options_of(context.recipe, context.out);
   const Facts used = solved(context, flags, options);
   if (!used.empty())
-    write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve"), inputs_of(options, context.out), used);
+    write_used_recipe(context, stage(), recipe::to_used_toml(options, "solve") + used_ensemble(context.recipe, true),
+                      inputs_of(options, context.out), used);
 }
 
 }  // namespace
@@ -176,7 +178,7 @@ Stage stage() {
   s.flags = flags_into(given);
   s.depends = [given](const StageContext& context) { return depends(context, *given); };
   s.used_toml = [](const recipe::Recipe& recipe) {
-    return recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false);
+    return recipe::to_toml(recipe.read<SolveOptions>("solve"), "solve", false) + used_ensemble(recipe, false);
   };
   s.id_of = id_in;
   s.part = [given] { return given->members ? fmt::format("{}-{}", given->members->first, given->members->end) : ""; };

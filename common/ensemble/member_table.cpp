@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "common/ensemble/options.hpp"
+#include "common/ensemble/used.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/run/sealed_file.hpp"
 #include "common/whole_text.hpp"
@@ -223,6 +224,7 @@ MemberTable read_member_table(const std::filesystem::path& path) {
 }
 
 void judge_members(const recipe::Recipe& recipe, const std::filesystem::path& file, const MemberTable& table) {
+  if (fact(table.provenance, used_by_members) == ensemble_mark(recipe)) return;
   for (const auto& [name, mark] : {std::pair{"ensemble", recipe_of_members}, {"slides", recipe_of_slides}})
     judge_maker(
         recipe,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/used.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
 #include "common/gis/outlines.hpp"
@@ -201,7 +202,8 @@ struct EnsembleResults {
   std::string used_text() const {
     std::vector<fs::path> inputs = ensemble.files;
     if (survey) inputs.insert(inputs.end(), survey->inputs.begin(), survey->inputs.end());
-    return used_recipe(context, stage, recipe::to_used_toml(options, "postprocess"), inputs,
+    const std::string tables = recipe::to_used_toml(options, "postprocess") + used_ensemble(context.recipe, true);
+    return used_recipe(context, stage, tables, inputs,
                        {{"ensemble", ensemble.counts.fingerprint},
                         {ensemble.table.slides ? "slides" : "members", members_words(ensemble)},
                         {"CRS", crs_name(ensemble.counts.scene.grid.crs_wkt)}});

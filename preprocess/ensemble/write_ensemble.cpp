@@ -12,6 +12,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
+#include "common/ensemble/used.hpp"
 #include "common/error.hpp"
 #include "common/map/raster.hpp"
 #include "common/map/statistics.hpp"
@@ -69,7 +70,7 @@ class MemberDomains {
 
   /// What a member's domain says of itself, whose `domain.id` follows from all that it is made of.
   Facts marks_of_member(std::int64_t member) const {
-    return marks_of(context_.recipe, inputs_of_member(member), difference_of(member));
+    return marks_of(context_.recipe, base_.options, inputs_of_member(member), difference_of(member));
   }
 
   /// The number of material points in the domains, by member; of those that were there it is read.
@@ -98,7 +99,7 @@ class MemberDomains {
 
   void make(std::int64_t member) {
     const Facts inputs = inputs_of_member(member);
-    Facts marks = marks_of(context_.recipe, inputs, difference_of(member));
+    Facts marks = marks_of(context_.recipe, base_.options, inputs, difference_of(member));
     const fs::path file = paths_.domain(member);
     if (is_there(file, marks)) {
       ++kept_;
@@ -305,6 +306,7 @@ std::int64_t write_ensemble(StageContext& context, EnsemblePlan& plan, const Ens
                       {"command", context.command_line},
                       {recipe_of_members, recipe_mark(context.recipe, "ensemble")},
                       {recipe_of_slides, recipe_mark(context.recipe, "slides")},
+                      {used_by_members, ensemble_mark(context.recipe)},
                       {base_domain_id, of_base}};
   if (plan.errors) table.provenance.emplace_back(elevation_error_of_members, plan.errors->words());
   write_member_table(paths.members(), table);

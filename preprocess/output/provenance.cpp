@@ -35,6 +35,20 @@ namespace {
 
 constexpr std::string_view checksum_mark = " sha256 ";
 
+/// The used values of [preprocess] as TOML, in which an input goes by its name wherever it lies.
+std::string text_by_names(const Options& used, const Facts& inputs) {
+  std::string text = recipe::to_toml(used, "preprocess", false);
+  for (const auto& [name, value] : inputs) {
+    const std::filesystem::path file = value.substr(0, value.rfind(checksum_mark));
+    const std::string opened = recipe::toml_text(file.generic_string());
+    const std::string whole = opened.substr(0, opened.size() - 1);  // a layer may follow
+    const std::string short_name = '"' + file.filename().string();
+    for (auto at = text.find(whole); at != std::string::npos; at = text.find(whole, at + short_name.size()))
+      text.replace(at, whole.size(), short_name);
+  }
+  return text;
+}
+
 }  // namespace
 
 Facts checksums_of(const std::vector<std::filesystem::path>& files) {
@@ -58,15 +72,15 @@ void require_unchanged(const Facts& inputs) {
   }
 }
 
-Facts marks_of(const recipe::Recipe& recipe, const Facts& inputs, const std::string& more) {
-  const std::string mark = recipe_mark(recipe, "preprocess");
-  std::string text = version() + "\n" + mark + "\n";
+Facts marks_of(const recipe::Recipe& recipe, const Options& used, const Facts& inputs, const std::string& more) {
+  std::string text = version() + "\n" + text_by_names(used, inputs);
   for (const auto& [name, value] : inputs) {
-    const auto sum = value.rfind("sha256 ");
+    const auto sum = value.rfind(checksum_mark);
     text += name + (sum == std::string::npos ? "" : value.substr(sum)) + "\n";
   }
   if (!more.empty()) text += more + "\n";
-  return {{domain_id, sha256_of_text(text).substr(0, mark_digits)}, {recipe_of_domain, mark}};
+  return {{domain_id, sha256_of_text(text).substr(0, mark_digits)},
+          {recipe_of_domain, recipe_mark(recipe, "preprocess")}};
 }
 
 Facts provenance_of(const StageContext& context, const Facts& inputs, const Facts& marks, const Facts& facts) {

@@ -23,9 +23,9 @@ Facts checksums_of(const std::vector<std::filesystem::path>& files);
 /// scene that cannot be made while its files are at fault is not itself at fault.
 void require_unchanged(const Facts& inputs);
 
-/// Whose domain it is: the same for the same [preprocess], inputs and version, wherever they lie and whenever it runs.
-/// `more` tells domains of one recipe apart.
-Facts marks_of(const recipe::Recipe& recipe, const Facts& inputs, const std::string& more = "");
+/// Whose domain it is: the same for the same `used` values of [preprocess], inputs and version, wherever they lie and
+/// whenever it runs, so that a recipe and its used recipe make the same. `more` tells domains of one recipe apart.
+Facts marks_of(const recipe::Recipe& recipe, const Options& used, const Facts& inputs, const std::string& more = "");
 
 /// All that a domain carries: scene, version, command, hardware, then inputs, marks and facts.
 Facts provenance_of(const StageContext& context, const Facts& inputs, const Facts& marks, const Facts& facts);

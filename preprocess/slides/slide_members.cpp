@@ -26,8 +26,36 @@ constexpr const char* of_slides[] = {"preprocess.release",         "preprocess.s
                                      "preprocess.before_dem",      "preprocess.after_dem", "preprocess.sliding_surface",
                                      "preprocess.thickness_factor"};
 
+/// The value that begins at `at` in the canonical text of a table.
+std::string_view value_at(std::string_view text, std::size_t at) {
+  int depth = 0;
+  bool quoted = false;
+  std::size_t end = at;
+  for (; end < text.size(); ++end) {
+    const char c = text[end];
+    if (c == '\\' && quoted) ++end;
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (depth == 0 && (c == ',' || c == '}' || c == ']')) break;
+    depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
+  }
+  return text.substr(at, std::min(end, text.size()) - at);
+}
+
+/// The values that [preprocess] has under a key, in whichever of its tables.
+std::vector<std::string> values_under(const recipe::Recipe& recipe, const std::string& key) {
+  const std::string text = recipe.canonical("preprocess").value_or(""), mark = "\"" + key + "\":";
+  std::vector<std::string> values;
+  for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1))
+    values.emplace_back(value_at(text, at + mark.size()));
+  return values;
+}
+
+/// Whether a recipe gives a key another value than its default, which a used recipe writes down.
 bool gives(const recipe::Recipe& recipe, const std::string& key) {
-  return recipe.canonical("preprocess").value_or("").find("\"" + key + "\":") != std::string::npos;
+  const auto usual = values_under(recipe::Recipe::parse(recipe::to_toml(Options{}, "preprocess", false)), key);
+  return std::ranges::any_of(values_under(recipe, key),
+                             [&](const std::string& value) { return std::ranges::find(usual, value) == usual.end(); });
 }
 
 /// The one [[preprocess.release]] of a slide, which sets this amount.

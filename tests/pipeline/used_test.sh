@@ -23,7 +23,7 @@ used_is_a_recipe() {
   local stage
   rm -rf out
   for stage in preprocess solve postprocess; do expect_exit 0 "$bin/talus-$stage" "$1" --out out; done
-  for stage in preprocess solve postprocess; do used_of $stage; done
+  for stage in postprocess solve preprocess; do used_of $stage; done   # what is made again outdates those after it
 }
 
 # with_survey LINES...: the scene scored against what these lines name.
@@ -92,6 +92,60 @@ test_pipelines_of_the_repository() {
     looked=$((looked + 1))
   done
   [[ $looked -ge 3 ]] || fail "only $looked pipelines run from the repository alone"
+}
+
+tables() { sed '1,/^$/d' "$1"; }
+id() { sed -n 's/^# id: //p' "$1"; }
+
+# used_again: of the results in out, every used recipe passes --check, and all of them in turn make the same anew.
+used_again() {
+  local stage
+  for stage in preprocess solve postprocess; do
+    expect_exit 0 "$bin/talus-$stage" out/$stage.used.toml --out out --check
+  done
+  for stage in preprocess solve postprocess; do
+    expect_exit 0 "$bin/talus-$stage" out/$stage.used.toml --out again -q
+    diff <(tables out/$stage.used.toml) <(tables again/$stage.used.toml) >&2 || fail "$stage: other values are used"
+  done
+  [[ -n $(id out/preprocess.used.toml) && $(id out/preprocess.used.toml) == "$(id again/preprocess.used.toml)" ]] ||
+    fail "another domain: $(id out/preprocess.used.toml) and $(id again/preprocess.used.toml)"
+}
+
+# made_of KEYS...: the bowl's results, of a short run that is scored against what preprocess finds, with further lines.
+made_of() {
+  scene
+  sed -i 's/^end_time_s.*/end_time_s = 1.0/; s/^thickness = .*/from_preprocess = true/' recipe.toml
+  printf '%s\n' "$@" >>recipe.toml
+  local stage
+  for stage in preprocess solve postprocess; do expect_exit 0 $stage -q; done
+}
+
+test_of_an_ensemble() {
+  made_of '[ensemble]' 'members = 2' '[[ensemble.vary]]' 'key = "solve.base.friction_angle_deg"' 'low = 12.0' \
+    'high = 18.0'
+  used_again
+}
+
+test_of_a_budget() {
+  made_of '[preprocess.difference]' 'sigma_m = 0.2' '[ensemble]' 'design = "budget"' '[ensemble.budget]' \
+    'survey_draws = 1'
+  used_again
+}
+
+test_of_slides() {
+  scene
+  ogr2ogr -q -f GeoJSON areas.geojson /vsistdin/ <<'JSON' || fail "areas.geojson"
+{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"depth": 3.0}, "geometry":
+  {"type": "Polygon", "coordinates": [[[500030, 5000080], [500070, 5000080], [500070, 5000120], [500030, 5000120],
+  [500030, 5000080]]]}}]}
+JSON
+  sed -i 's/^end_time_s.*/end_time_s = 1.0/; /^after_dem/d; s/^before_dem/base_dem/' recipe.toml
+  sed -i '/postprocess.survey/,$d' recipe.toml
+  printf '%s\n' '[slides]' 'outlines = "areas.geojson"' '[[slides.set]]' 'key = "preprocess.release[0].thickness_m"' \
+    'attribute = "depth"' >>recipe.toml
+  local stage
+  for stage in preprocess solve postprocess; do expect_exit 0 $stage -q; done
+  used_again
 }
 
 run_test "$@"
