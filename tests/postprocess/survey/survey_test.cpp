@@ -323,7 +323,7 @@ std::vector<double> noisy_change(const RunMaps& maps, double noise) {
 TEST_F(SurveyTest, counts_no_noise_as_change_where_the_error_is_not_given) {
   for (const double noise : {0.0, 0.05, 0.2}) {
     options_.difference = raster("difference.tif", small_grid(), noisy_change(run_.maps, noise));
-    const auto survey = read_survey(options_, run_.maps, 0.1);
+    const auto survey = read_survey(options_, run_.maps, 0.1, {});
     EXPECT_GE(survey->error.noise, noise) << noise;
     EXPECT_LE(survey->error.noise, 1) << noise;
     EXPECT_EQ(survey->usual_level(), survey->error.noise);
@@ -332,7 +332,7 @@ TEST_F(SurveyTest, counts_no_noise_as_change_where_the_error_is_not_given) {
     EXPECT_EQ(above, 100) << noise;
   }
   options_.difference = raster("difference.tif", small_grid(), noisy_change(run_.maps, 5));
-  EXPECT_EQ(read_survey(options_, run_.maps, 0.1)->error.noise, 1) << "as large as slides: no noise";
+  EXPECT_EQ(read_survey(options_, run_.maps, 0.1, {})->error.noise, 1) << "as large as slides: no noise";
 }
 
 TEST_F(SurveyTest, leaves_out_of_the_simulation_what_the_survey_could_not_detect) {
@@ -340,7 +340,7 @@ TEST_F(SurveyTest, leaves_out_of_the_simulation_what_the_survey_could_not_detect
   options_.sigma_m = 0.5;
   run_.maps.deposit_thickness[0] = run_.maps.peak_thickness[0] = 0.9;
   run_.maps.deposit_thickness[1] = run_.maps.peak_thickness[1] = 1.0;
-  const auto survey = read_survey(options_, run_.maps, 0.1);
+  const auto survey = read_survey(options_, run_.maps, 0.1, {});
   EXPECT_EQ(survey->usual_level(), 0.98);
   const auto simulated = bring_to_survey_grid(run_.maps, *survey);
   EXPECT_EQ(simulated.deposit[0], 0);
