@@ -152,27 +152,42 @@ std::vector<std::string> different_keys(const std::vector<recipe::UsedKey>& note
   return different;
 }
 
-/// ": end_time_s, base.friction_angle_deg", the changed keys of a table; empty where none is known.
-std::string changed_keys(const Record& record, const std::string& fresh, const std::string& table) {
+/// Whether a key stands in a table, or in one within.
+bool is_of(const std::string& name, const std::string& table) {
+  return name.starts_with(table + ".") || name.starts_with(table + " ");
+}
+
+/// The keys of a table whose values are not those noted, those that the stage settles by itself among them.
+std::vector<std::string> changed_keys(const Record& record, const std::string& fresh, const std::string& table) {
   std::vector<std::string> changed;
-  std::size_t count = 0;
-  for (const std::string& name : different_keys(record.keys, recipe::read_used_recipe(fresh, "recipe").keys)) {
-    if (!name.starts_with(table + ".") && !name.starts_with(table + " ")) continue;
-    if (record.resolved.contains(name)) continue;
-    if (++count <= most_keys_named) changed.push_back(name.substr(table.size() + 1));
-  }
+  for (const std::string& name : different_keys(record.keys, recipe::read_used_recipe(fresh, "recipe").keys))
+    if (is_of(name, table)) changed.push_back(name);
+  return changed;
+}
+
+/// ": end_time_s, base.friction_angle_deg"; empty where none is known.
+std::string words_of(std::vector<std::string> changed, const Record& record, const std::string& table) {
+  const auto resolved = [&](const std::string& name) { return record.resolved.contains(name); };
+  if (!std::ranges::all_of(changed, resolved)) std::erase_if(changed, resolved);
+  const std::size_t count = changed.size();
+  changed.resize(std::min(count, most_keys_named));
+  for (std::string& name : changed) name.erase(0, table.size() + 1);
   if (count > most_keys_named) changed.push_back(fmt::format("{} more", count - most_keys_named));
   return changed.empty() ? "" : fmt::format(": {}", fmt::join(changed, ", "));
 }
 
-/// Why the recipe is another one; empty where it is not.
+/// Why the recipe is another one; empty where it is not, or states what was used.
 std::string changed_tables(const Record& record, const std::string& fresh) {
   const auto tables = tables_in(fresh);
   for (const auto& [name, text] : tables) {
     const auto noted = record.tables.find(name);
     if (noted == record.tables.end()) return fmt::format("[{}] is new", name);
-    if (noted->second != sha256_of_text(text))
-      return fmt::format("[{}] has changed{}", name, changed_keys(record, fresh, name));
+    if (noted->second == sha256_of_text(text)) continue;
+    const std::vector<std::string> changed = changed_keys(record, fresh, name);
+    const bool known = std::ranges::any_of(record.keys, [&](const recipe::UsedKey& key) {
+      return is_of(name_of(key), name);  // those of [scene] are not
+    });
+    if (!known || !changed.empty()) return fmt::format("[{}] has changed{}", name, words_of(changed, record, name));
   }
   for (const auto& [name, checksum] : record.tables)
     if (!tables.contains(name)) return fmt::format("[{}] is gone", name);

@@ -260,6 +260,10 @@ TEST_F(Freshness, a_changed_table_is_named_with_its_keys) {
   EXPECT_EQ(reason(), "");
   set = {"solve.steps=6"};
   EXPECT_EQ(reason(), "[solve] has changed: material.friction_angle_deg") << "not the key that the stage itself finds";
+  set = {"solve.steps=6", "solve.density_kg_m3=1234"};
+  EXPECT_EQ(reason(), "") << "the recipe states what the stage found";
+  set = {"solve.steps=6", "solve.density_kg_m3=1235"};
+  EXPECT_EQ(reason(), "[solve] has changed: density_kg_m3");
   set = {"solve.steps=6", "scene.title=U"};
   EXPECT_EQ(reason(), "[scene] has changed");
 }
