@@ -315,6 +315,7 @@ void make_folder(const fs::path& folder) {
   const fs::path above = folder.parent_path();
   if (!above.empty() && above != folder) make_folder(above);
   std::error_code error;
+  if (const char* kind = kind_of(fs::status(folder, error).type()); kind != nullptr) refuse_to_replace(folder, kind);
   fs::create_directory(folder, error);
   if (error)
     throw DataError(
