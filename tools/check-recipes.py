@@ -72,7 +72,8 @@ def parsed(table, name, value, help_line):
     inside = found.group(1) if found else ""
     default = json.loads(value.replace("'", '"')) if not value.startswith('"') else value[1:-1]
     words = re.findall(r'"([^"]*)"', inside)
-    if name in LEFT_OUT or table in LEFT_OUT_TABLES or (isinstance(default, str) and not words):
+    curve = isinstance(default, list) and any(isinstance(item, list) for item in default)
+    if name in LEFT_OUT or table in LEFT_OUT_TABLES or curve or (isinstance(default, str) and not words):
         return None
     low, high, open_low, open_high = -math.inf, math.inf, False, False
     for sign, number in re.findall(r"(>=|<=|>|<) (-?[0-9.e+-]+)", inside):

@@ -11,6 +11,7 @@
 #include "common/map/statistics.hpp"
 #include "common/map/usual_reach.hpp"
 #include "common/stage/findings.hpp"
+#include "preprocess/terrain/height_statistics.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
@@ -19,12 +20,6 @@ namespace {
 constexpr std::size_t most_measured = 10;
 constexpr double rival_share = 0.1;     // of its volume: less is no rival
 constexpr double least_returned = 0.5;  // of what fell: with less, most of it went where nobody knows
-constexpr double level_to = 0.1;        // [m] waves, and the strips of an airborne survey
-constexpr double level_detections = 2;  // 3.29 / sqrt(2) / 1.96 = 1.2, with a margin for few cells
-
-double range_of(std::vector<double> heights, double low, double high) {
-  return quantile(heights, high) - quantile(heights, low);
-}
 
 std::vector<double> at(const std::vector<double>& values, const std::vector<std::size_t>& cells) {
   std::vector<double> some;
@@ -33,10 +28,8 @@ std::vector<double> at(const std::vector<double>& values, const std::vector<std:
 }
 
 bool is_water(const Lowered& l, const Region& region) {
-  const double noise = median(at(l.change.noise, region.cells)),
-               resolved = std::max(level_to, level_detections * noise);
-  return range_of(at(l.before.values, region.cells), 0.05, 0.95) <= resolved &&
-         range_of(at(l.after.values, region.cells), 0.05, 0.5) <= resolved;
+  return is_level(at(l.before.values, region.cells), at(l.after.values, region.cells),
+                  median(at(l.change.noise, region.cells)));
 }
 
 /// The cells of the slide that a region would be.

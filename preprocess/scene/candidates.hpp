@@ -38,9 +38,7 @@ struct Lowered {
 /// Measures the largest ten of `regions` (lowering_regions()) that are no noise, the largest first. What rose is sought
 /// as for the deposit (grown_slide()); what fell in larger or level regions is no part of a smaller one. A candidate is
 /// doubtful where
-/// - its surface is level before and after to what the surveys resolve: the range of 90 % of its heights before, and
-///   that of the lower half after, is at most two levels of detection (3.29 standard errors of one of two equal surveys
-///   are 1.2), or 0.1 m;
+/// - it is level before and after (is_level());
 /// - less than half, or more than twice, of what fell on its way rose there, or that lies higher (wrong_order());
 /// - H/L to what rose is less than slides of its volume hardly ever have (usual_reach()).
 std::vector<Candidate> candidates_of(const Lowered& lowered, const std::vector<Region>& regions,

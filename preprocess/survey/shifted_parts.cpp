@@ -12,6 +12,7 @@
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "preprocess/regions/regions.hpp"
+#include "preprocess/terrain/height_statistics.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
@@ -22,7 +23,7 @@ constexpr double far = 4, clear = 6;  // times the noise
 constexpr std::size_t least_part = 200;
 constexpr double least_share_of_map = 0.01;  // of the map
 constexpr int most_levels = 16;
-constexpr double of_step = 0.25, half = 0.5, straight_share = 0.65;
+constexpr double of_step = 0.25, half = 0.5, straight_share = 0.5;
 constexpr std::size_t least_line = 20;
 constexpr double line_share = 0.15;  // of the edge
 constexpr int angles = 360;          // of a half turn
@@ -222,6 +223,7 @@ class Search {
   Search(const Patch& patch, const Placement& placement)
       : grid_(patch.before.grid),
         values_(smoothed(grid_, misfit(patch, placement))),
+        before_(patch.before.values),
         noise_(noise_of(grid_, values_)),
         edges_(grid_, values_, noise_) {
     for (const double v : values_)
@@ -265,7 +267,17 @@ class Search {
     const EvenLines lines = even_lines(grid_, edge.sides, noise_);
     if (!(lines.size >= clear * noise_) || std::max(lines.of_edge, lines.of_map) < straight_share) return;
     for (const std::size_t i : cells) taken_[i] = 1;
-    found_.push_back({std::move(cells), lines.step, edge.at_rim >= least_rim});
+    if (!is_water(cells)) found_.push_back({std::move(cells), lines.step, edge.at_rim >= least_rim});
+  }
+
+  bool is_water(const std::vector<std::size_t>& cells) const {
+    constexpr double detection = 1.96 * 3 / 1.2533;  // of one cell, from medians of nine
+    std::vector<double> before, after;
+    for (const std::size_t i : cells) {
+      before.push_back(before_[i]);
+      after.push_back(before_[i] + values_[i]);
+    }
+    return is_level(before, after, detection * noise_);
   }
 
   /// Leaves those that the rim does not cut and that balance what changed elsewhere: scars and heaps of even thickness.
@@ -285,6 +297,7 @@ class Search {
 
   const MapGrid& grid_;
   std::vector<double> values_;
+  const std::vector<double>& before_;
   double noise_;
   EdgeReader edges_;
   std::vector<double> sorted_;
@@ -318,10 +331,11 @@ void judge_shifted_parts(const std::vector<Patch>& patches, const Placement& pla
                      std::abs(part.step), part.step < 0 ? "lower" : "higher",
                      parts.size() > 1 ? fmt::format(" ({} such parts)", parts.size()) : ""),
          fmt::format(
-             "its edge is straight, with one step all along, and it is level on both sides{}: a tile or a strip of "
-             "one survey that does not fit the others, hardly a slide",
+             "its edge is straight, with one step all along, and its change is even on both sides{}: a tile or a strip "
+             "of one survey that does not fit the others, felled or planted forest, or building ground; hardly a slide",
              part.at_rim ? "; the rim of the map cuts it" : "; nothing balances it"),
-         "Level the parts onto one another before, or cut one part out of both models (gdal_translate -projwin)"},
+         "Level the parts onto one another before, cut one part out of both models (gdal_translate -projwin), or mask "
+         "what is none by ignore in [preprocess.difference]"},
         {{"step", part.step, "m"}, {"area", area, "m2"}});
     return;
   }

@@ -22,13 +22,14 @@ struct ShiftedPart {
 /// and slides do not raise), at least 1 cm. Its levels are the middles of the densest windows of 4 s, the first one of
 /// the whole, each next one of what lies further than 4 s from those before. A part is a connected region beyond 4 s
 /// from the first level, or within 4 s of a later one, of 200 cells and a hundredth of the map at least, which
-/// - has 65 % of its edge on even lines, or one that takes 65 % of its way from rim to rim of the map: a straight line
+/// - has half of its edge on even lines, or one that takes half of its way from rim to rim of the map: a straight line
 ///   with 20 sides of cells of the edge and 15 % of all within one cell, those sides of it counted at which the step,
 ///   from one cell inside to three outside, keeps to the line's median, or to a trend that does not triple it, by a
 ///   quarter, and at which the difference is as level from there to six cells on both sides. A circle has no such line,
 ///   an ellipse three times as long as wide has two of 40 %; scars and deposits go on sloping;
 /// - has a median step there of 6 s at least;
-/// - is cut by the rim, or leaves what rose and what fell elsewhere nearer to balance than they are with it.
+/// - is cut by the rim, or leaves what rose and what fell elsewhere nearer to balance than they are with it;
+/// - is not level in both surveys (is_level()), as a lake is whose water fell.
 std::vector<ShiftedPart> shifted_parts(const Patch& patch, const Placement& placement);
 
 /// Refuses, unless accepted ("shifted-part"), two surveys with a shifted part, with its place, step and area. Looked

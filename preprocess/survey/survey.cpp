@@ -34,6 +34,16 @@ std::vector<MapPolygon> changed_ground(const Survey& s, const std::filesystem::p
   return all;
 }
 
+/// Ground whose change is not looked at has no height.
+void leave_out(std::vector<Patch>& patches, const std::vector<MapPolygon>& ignored) {
+  if (ignored.empty()) return;
+  for (Patch& patch : patches) {
+    const std::vector<char> inside = cells_inside(ignored, patch.before.grid);
+    for (std::size_t i = 0; i < inside.size(); ++i)
+      if (inside[i]) patch.before.values[i] = nan;
+  }
+}
+
 /// The overlap of both in cells of the first, whatever part of it and spacing the scene is computed with.
 MapGrid whole_overlap(const Elevation& before, const Elevation& after, const Options& options) {
   const double spacing = before.scattered ? options.grid.spacing : 0;
@@ -229,6 +239,7 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   const double given = options.difference.sigma;
   s.errors = ErrorModel::of(given);
   std::vector<Patch> patches = patches_of(s.before, s.after, s.grid);
+  leave_out(patches, s.ignored);
   if (how.mode == Alignment::off && given > 0) {
     judge_shifted_parts(patches, {}, s.after.file);
     return s;

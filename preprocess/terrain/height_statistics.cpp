@@ -152,6 +152,13 @@ LevelPiece most_common_height(const Raster& heights) {
   return piece;
 }
 
+bool is_level(const std::vector<double>& before, const std::vector<double>& after, double detection) {
+  constexpr double least = 0.1, detections = 2;
+  const double resolved = std::max(least, detections * detection);
+  return quantile(before, 0.95) - quantile(before, 0.05) <= resolved &&
+         quantile(after, 0.5) - quantile(after, 0.05) <= resolved;
+}
+
 void warn_of_statistics(const Raster& heights, const std::filesystem::path& file) {
   warn_of_steps(heights, file);
   if (valid_heights(heights).size() < least_cells) return;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "common/map/raster.hpp"
 
@@ -29,6 +30,12 @@ struct LevelPiece {
   double lower_rim = 0;              // the share of their neighbours of other heights that lie lower
 };
 LevelPiece most_common_height(const Raster& heights);
+
+/// Whether a piece of ground is level in both surveys, as water is, to what they resolve: the range of 90 % of its
+/// heights before, and that of the lower half after (where it fell, shores lie bare), is at most two levels of
+/// detection (3.29 standard errors of one of two equal surveys are 1.2, and there are few cells), or 0.1 m: waves, and
+/// the strips of an airborne survey. Heights of its cells [m], and their level of detection [m].
+bool is_level(const std::vector<double>& before, const std::vector<double>& after, double detection);
 
 /// Warnings of heights [m] that may be no heights of ground, each with the causes that it cannot tell apart:
 /// "stepped-heights" (steps of 0.1 m and more), "noise-like-heights" (a ratio above 0.8, which is ground with H < 0.87

@@ -46,6 +46,7 @@ PYTHON
 
 test_the_threshold_follows_a_thin_release() {
   scene
+  sed -i 's/^\[preprocess.grid\]/[preprocess.source]\nseed_m = [500045, 5000105]\n\n&/' recipe.toml
   local thick threshold
   while read -r thick threshold; do
     grid after.asc "$bowl - $thick * $in_source"
