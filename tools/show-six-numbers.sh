@@ -7,11 +7,8 @@ set -euo pipefail
 score=${1:?usage: tools/show-six-numbers.sh SCORE.txt}
 wanted=('released' 'run-out L, straight' 'H/L' 'largest peak speed' 'thickest deposit' 'deposit CSI')
 for name in "${wanted[@]}"; do
-  line=$(grep -m 1 -E "^  $name {2,}" "$score" || echo 'not scored')
-  case $name in
-    released) shown='released volume' ;;
-    'deposit CSI') shown='deposit CSI (overlap with the survey; 1 = the same)' ;;
-    *) shown=$name ;;
-  esac
-  printf '  %-52s %s\n' "$shown" "$(sed -E "s|^ +$name +||" <<<"$line")"
+  line=$(grep -m 1 -E "^  $name(, (to )?> [0-9.]+ m)? {2,}" "$score" || echo "  $name  not scored")
+  shown=$(sed -E 's|^ +||; s| {2,}.*||' <<<"$line")
+  if [[ $name == 'deposit CSI' ]]; then shown+=' (overlap; 1 = the same)'; fi
+  printf '  %-58s %s\n' "$shown" "$(sed -E 's|^ +.* {2,}||' <<<"$line")"
 done
