@@ -227,6 +227,23 @@ std::string invalidity_of(const MapPolygon& polygon) {
   return valid ? "" : why.empty() ? "GEOS gives no reason" : why;
 }
 
+std::vector<MapPolygon> united(const std::vector<MapPolygon>& polygons, const std::filesystem::path& file) {
+  if (polygons.size() < 2) return polygons;
+  OGRMultiPolygon all;
+  for (const MapPolygon& polygon : polygons) {
+    const OGRPolygon shape = gdal::ogr_polygon(polygon);
+    all.addGeometry(&shape);
+  }
+  const gdal::QuietErrors errors;
+  const std::unique_ptr<OGRGeometry> shape(all.UnionCascaded());
+  if (!shape)
+    throw DataError({file.string() + ": its polygons cannot be united", errors.text(),
+                     "Unite them in a GIS: ogr2ogr -dialect sqlite -sql \"SELECT ST_Union(geometry) FROM LAYER\""});
+  std::vector<MapPolygon> result;
+  add_shapes(*shape, polygons.front(), result);
+  return result;
+}
+
 std::vector<MapPolygon> grown(const std::vector<MapPolygon>& polygons, double distance,
                               const std::filesystem::path& file) {
   if (distance == 0) return polygons;

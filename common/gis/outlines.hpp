@@ -39,6 +39,10 @@ void write_outlines(const std::filesystem::path& gpkg, const std::string& crs_wk
 /// holes outside or nested, no area. Empty for a valid polygon.
 std::string invalidity_of(const MapPolygon& polygon);
 
+/// The ground that any of the polygons covers, as polygons that share none and touch at points only; attributes of the
+/// first. `file` is named in messages. Throws DataError: GDAL has no GEOS.
+std::vector<MapPolygon> united(const std::vector<MapPolygon>& polygons, const std::filesystem::path& file);
+
 /// Each polygon with all ground within `distance` [m] of it, corners round to a thousandth of the distance; with a
 /// negative one less what lies within it of the edge, so that holes and necks open, and one polygon may become several
 /// or none. Attributes stay. `file` is named in messages. Throws DataError: nothing is left, or GDAL has no GEOS.

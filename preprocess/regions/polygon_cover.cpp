@@ -161,6 +161,14 @@ std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& source,
   return polygons;
 }
 
+std::vector<MapPolygon> read_united_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                             double grow, const std::string& usual) {
+  const std::filesystem::path file = vector_source(source).file;
+  std::vector<MapPolygon> polygons = united(read_grown_polygons(source, crs_wkt, grow, usual), file);
+  check_polygons(polygons, file);
+  return polygons;
+}
+
 double area_of(const MapPolygon& polygon) {
   Sum twice;
   const auto origin = polygon.rings.front().front();  // map coordinates are large, areas are not

@@ -25,6 +25,10 @@ std::vector<MapPolygon> read_valid_polygons(const std::filesystem::path& source,
 std::vector<MapPolygon> read_grown_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
                                             double grow, const std::string& usual = {});
 
+/// Those united: for ground that counts once, however often it is given.
+std::vector<MapPolygon> read_united_polygons(const std::filesystem::path& source, const std::string& crs_wkt,
+                                             double grow = 0, const std::string& usual = {});
+
 /// Area without the holes [m2]; rings turned as check_polygons() does.
 double area_of(const MapPolygon& polygon);
 

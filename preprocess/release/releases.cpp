@@ -193,6 +193,21 @@ void refuse_release_on_nodata(const Raster& thickness, const Raster& bed, const 
 
 }  // namespace
 
+void warn_of_overlap(const std::vector<Release>& releases) {
+  for (std::size_t a = 0; a < releases.size(); ++a) {
+    for (std::size_t b = a + 1; b < releases.size(); ++b) {
+      std::size_t shared = 0;
+      for (std::size_t i = 0; i < releases[a].thickness.values.size(); ++i)
+        shared += releases[a].thickness.values[i] > 0 && releases[b].thickness.values[i] > 0;
+      if (shared > 0)
+        warn("releases-overlap",
+             fmt::format("{} and {} share {} cells; there the second lies on the first", releases[a].name,
+                         releases[b].name, shared),
+             {{"cells", static_cast<double>(shared), "1"}});
+    }
+  }
+}
+
 Release read_release(const ReleaseOptions& options, std::size_t item, const Raster& bed,
                      const std::filesystem::path& model) {
   const auto& file = options.polygons.empty() ? options.thickness_raster : options.polygons;

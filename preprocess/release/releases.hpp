@@ -43,4 +43,7 @@ struct Release {
 Release read_release(const ReleaseOptions& options, std::size_t item, const Raster& bed,
                      const std::filesystem::path& model);
 
+/// Warns of releases that share ground: the later ones lie on the earlier.
+void warn_of_overlap(const std::vector<Release>& releases);
+
 }  // namespace talus::preprocess

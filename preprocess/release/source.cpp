@@ -139,7 +139,7 @@ constexpr std::size_t most_points = 1000;  // each takes a vector over the cells
 Outline read_outline(const Raster& before, const SourceOptions& options) {
   const std::filesystem::path& file = options.polygon;
   Outline outline =
-      outline_of(before.grid, read_grown_polygons(file, before.grid.crs_wkt, options.grow, "source"), file);
+      outline_of(before.grid, read_united_polygons(file, before.grid.crs_wkt, options.grow, "source"), file);
   std::vector<char> empty(outline.part.size());
   for (std::size_t c = 0; c < empty.size(); ++c) empty[c] = outline.part[c] > 0 && std::isnan(before.values[c]);
   refuse_cells(before.grid, empty, file,

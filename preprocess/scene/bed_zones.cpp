@@ -27,7 +27,7 @@ constexpr double degrees = 180 / std::numbers::pi;
 std::vector<double> shares_of(const BedZone& zone, const Raster& ground) {
   std::vector<double> share(ground.grid.count(), zone.polygons.empty() ? 1.0 : 0.0);
   if (!zone.polygons.empty()) {
-    for (const MapPolygon& polygon : read_valid_polygons(zone.polygons, ground.grid.crs_wkt)) {
+    for (const MapPolygon& polygon : read_united_polygons(zone.polygons, ground.grid.crs_wkt)) {
       const std::vector<double> part = coverage_within(ground.grid, polygon);
       for (std::size_t i = 0; i < part.size(); ++i) share[i] = std::min(1.0, share[i] + part[i]);
     }

@@ -72,6 +72,7 @@ void lay_erodible(const Options& options, SceneRasters& scene) {
     layers.push_back(o.lowering ? lowered_outside_source(scene, o.name)
                                 : read_release(o, e, scene.bed, options.first_dem()));
   }
+  warn_of_overlap(layers);
   for (const Release& layer : layers)
     for (std::size_t c = 0; c < scene.bed.values.size(); ++c) scene.bed.values[c] -= layer.thickness.values[c];
   scene.releases.insert(scene.releases.begin(), std::make_move_iterator(layers.begin()),
@@ -226,8 +227,8 @@ Prepared prepare(const Options& given, Points points) {
 
 Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   scale_thickness(options.thickness_factor, scene);
-  lay_erodible(options, scene);
   const Findings found("preprocess");
+  lay_erodible(options, scene);
   Prepared prepared;
   prepared.domain.release_thickness = total_thickness(scene, options.erodible.size());
   const Seeding seeding = seeding_of(options.grid, layer_height(options, prepared.domain.release_thickness));

@@ -85,7 +85,7 @@ SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory)
   auto [survey, surfaces, of_slide, found] = memory != nullptr ? memory->surveyed(options) : surveyed(options);
   SurveyedSlide& slide = *of_slide;
   if (!survey.source.empty())
-    survey.source = read_grown_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
+    survey.source = read_united_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
   const Change change = change_between(surfaces[0], surfaces[1], options.deposit, slide);
   const SurveyFiles files{options.before_dem.string(), options.after_dem.string(), survey.applied};
   const SurfacePair pair{surfaces[0], surfaces[1], options.after_dem, false, survey.source, change.noise};
@@ -114,7 +114,7 @@ SceneRasters from_sliding_surface(const Options& options) {
   require_data(under, sliding.file);
   SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
   if (!options.source.polygon.empty())
-    pair.outline = read_grown_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, "source");
+    pair.outline = read_united_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, "source");
   Source source = find_source(pair, options.source);
   SceneRasters scene = from_source(std::move(surfaces[0]), std::move(source));
   scene.heights = before.heights();
@@ -130,21 +130,6 @@ SceneRasters from_outline(const Options& options) {
   scene.sliding_surface = std::move(computed.computed);
   scene.heights = before.heights();
   return scene;
-}
-
-void warn_of_overlap(const std::vector<Release>& releases) {
-  for (std::size_t a = 0; a < releases.size(); ++a) {
-    for (std::size_t b = a + 1; b < releases.size(); ++b) {
-      std::size_t shared = 0;
-      for (std::size_t i = 0; i < releases[a].thickness.values.size(); ++i)
-        shared += releases[a].thickness.values[i] > 0 && releases[b].thickness.values[i] > 0;
-      if (shared > 0)
-        warn("releases-overlap",
-             fmt::format("releases {} and {} share {} cells; there the second lies on the first", releases[a].name,
-                         releases[b].name, shared),
-             {{"cells", static_cast<double>(shared), "1"}});
-    }
-  }
 }
 
 SceneRasters from_releases(const Options& options) {

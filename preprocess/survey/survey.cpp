@@ -231,7 +231,7 @@ Survey compare_surveys(Elevation before, Elevation after, const Options& options
   s.after = std::move(after);
   s.grid = whole_overlap(s.before, s.after, options);
   if (!options.source.polygon.empty())
-    s.source = read_grown_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
+    s.source = read_united_polygons(options.source.polygon, s.grid.crs_wkt, options.source.grow, "source");
   if (!options.deposit.polygon.empty())
     s.deposit = read_valid_polygons(options.deposit.polygon, s.grid.crs_wkt, "deposit");
   if (!options.difference.ignore.empty())

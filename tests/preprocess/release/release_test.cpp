@@ -56,6 +56,29 @@ TEST_F(outline_source, lies_as_deep_as_asked_for_and_is_the_same_source_given_ba
   EXPECT_FALSE(again.sliding_surface);
 }
 
+TEST_F(outline_source, is_the_same_by_parts_that_touch_overlap_or_come_twice) {
+  const std::string
+      rest[] = {"(500063 5100127, 500193 5100109, 500214 5100231, 500081 5100248, 500063 5100127)",
+                "(500128 5100118, 500193 5100109, 500214 5100231, 500147.5 5100239.5, 500128 5100118)",
+                "(500115 5100119.8, 500193 5100109, 500214 5100231, 500134.2 5100241.2, 500115 5100119.8)"},
+      west[] = {rest[0], "(500063 5100127, 500128 5100118, 500147.5 5100239.5, 500081 5100248, 500063 5100127)",
+                "(500063 5100127, 500141 5100116.2, 500160.8 5100237.8, 500081 5100248, 500063 5100127)"};
+  surface().depth = 25;
+  const Prepared whole = prepare();
+  const auto under = write(scratch, "sliding_surface.tif", whole.sliding_surface->surface);
+  for (std::size_t k = 0; k < std::size(west); ++k) {
+    outline(fmt::format("MULTIPOLYGON(({}),({}))", west[k], rest[k]));
+    surface().depth = 25;
+    const Prepared parts = prepare();
+    EXPECT_NEAR(parts.total.volume / whole.total.volume, 1, 1e-6) << k;
+    EXPECT_NEAR(parts.total.projected_area / whole.total.projected_area, 1, 1e-6) << k;
+    surface() = {};
+    options.sliding_surface = under;
+    EXPECT_NEAR(prepare().total.volume / whole.total.volume, 1, 1e-6) << k;
+    options.sliding_surface.clear();
+  }
+}
+
 TEST_F(outline_source, without_a_depth_has_the_volume_of_slides_of_its_area) {
   EXPECT_NEAR(prepare().total.volume / volume_by_area(outline_area), 1, 1e-9);
   EXPECT_NEAR(volume_by_area(1e4), 0.074 * std::pow(10.0, 5.8), 1e-6);

@@ -156,6 +156,18 @@ TEST_F(thickness_factor, of_releases_over_erodible_ground_leaves_the_ground_alon
   }
 }
 
+TEST_F(thickness_factor, of_layers_that_share_ground_is_said) {
+  ErodibleOptions layer;
+  const double x = grid.west, y = grid.south;
+  layer.polygons = test::write_polygon(scratch, "ground.csv", test::rectangle(x + 83, y + 101, x + 180, y + 201));
+  layer.thickness = 2.5;
+  options.erodible = {layer, layer};
+  const auto found = prepare().domain.findings;
+  const auto said = std::ranges::find(found, "releases-overlap", &Finding::name);
+  ASSERT_NE(said, found.end());
+  EXPECT_TRUE(said->message.starts_with("erodible-1 and erodible-2 share")) << said->message;
+}
+
 TEST_F(thickness_factor, stretches_every_point_where_as_many_are_seeded) {
   options.grid.layer_height = 2;
   Domain scaled = prepare().domain;
