@@ -143,8 +143,7 @@ void left_out(const Scored& scored, const OnSurveyGrid& simulated, Sheet& sheet)
 
 void of_run(const Scored& scored, Sheet& sheet) {
   sheet.note(
-      "Thickness is vertical. Were the release's thickness normal to the slope, its volume would be that of the second "
-      "line: "
+      "Thickness is vertical. Read as normal to the slope, that of the release gives the volume of the second line: "
       "thickness times area over the cosine of the slope.");
   sheet.note(
       "Run-out: in plan from the crown (highest release cell), straight to the farthest deposit cell, or along the "

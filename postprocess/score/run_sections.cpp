@@ -30,7 +30,7 @@ void volumes(const Scored& scored, Sheet& sheet) {
   const auto release = release_numbers(run, release_limit(run.maps, scored.options.deposit_threshold));
   sheet.section("Volume");
   sheet.number("volume_released_m3", "released", "m3", s.volume_released, 0);
-  sheet.number("volume_if_thickness_were_slope_normal_m3", "if its thickness were normal to the slope", "m3",
+  sheet.number("volume_if_thickness_were_slope_normal_m3", "if its vertical thickness were read as slope-normal", "m3",
                release.volume_if_normal, 0);
   sheet.number("release_area_m2", "area of the release, in plan", "m2", release.area, 0);
   sheet.number("release_true_area_m2", "area of the release, along the slope", "m2", release.true_area, 0);

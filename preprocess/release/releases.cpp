@@ -24,32 +24,38 @@ namespace talus::preprocess {
 Volumes volumes_of(const Raster& thickness, const std::vector<double>& cosine) {
   const double cell_area = thickness.grid.cell * thickness.grid.cell;
   Volumes v;
-  Sum volume, if_normal, true_area;
+  Sum volume, if_normal, if_vertical, true_area;
   for (std::size_t i = 0; i < thickness.values.size(); ++i) {
     const double t = thickness.values[i];
     if (!(t > 0)) continue;
     ++v.cells;
     volume.add(t);
     if_normal.add(t / cosine[i]);
+    if_vertical.add(t * cosine[i]);
     true_area.add(1 / cosine[i]);
     v.max_vertical = std::max(v.max_vertical, t);
     v.max_normal = std::max(v.max_normal, t * cosine[i]);
   }
   v.volume = volume.value() * cell_area;
   v.volume_if_normal = if_normal.value() * cell_area;
+  v.volume_if_vertical = if_vertical.value() * cell_area;
   v.projected_area = static_cast<double>(v.cells) * cell_area;
   v.true_area = true_area.value() * cell_area;
   return v;
 }
 
 std::vector<std::string> as_lines(const std::string& name, const Volumes& v) {
-  return {fmt::format("{}: {} m3: vertical thickness times map area", name, grouped(v.volume)),
-          fmt::format("  the same thickness taken as slope-normal would be {} m3 ({:+.1f} %)",
-                      grouped(v.volume_if_normal), 100 * (v.volume_if_normal / v.volume - 1)),
-          fmt::format("  area {} m2 on the map, {} m2 along the bed, {} cells", grouped(v.projected_area),
-                      grouped(v.true_area), v.cells),
-          fmt::format("  thickness at most {} m vertical, {} m slope-normal", fixed(v.max_vertical, 2),
-                      fixed(v.max_normal, 2))};
+  const bool vertical = v.given == Direction::vertical;
+  const double otherwise = vertical ? v.volume_if_normal : v.volume_if_vertical;
+  return {
+      fmt::format("{}: {} m3: {}", name, grouped(v.volume),
+                  vertical ? "vertical thickness times map area" : "slope-normal thickness times area along the bed"),
+      fmt::format("  the same thickness taken as {} would be {} m3 ({:+.1f} %)", vertical ? "slope-normal" : "vertical",
+                  grouped(otherwise), 100 * (otherwise / v.volume - 1)),
+      fmt::format("  area {} m2 on the map, {} m2 along the bed, {} cells", grouped(v.projected_area),
+                  grouped(v.true_area), v.cells),
+      fmt::format("  thickness at most {} m vertical, {} m slope-normal", fixed(v.max_vertical, 2),
+                  fixed(v.max_normal, 2))};
 }
 
 std::vector<std::pair<std::string, std::string>> as_facts(const Volumes& v) {
@@ -212,7 +218,8 @@ Release read_release(const ReleaseOptions& options, std::size_t item, const Rast
                      const std::filesystem::path& model) {
   const auto& file = options.polygons.empty() ? options.thickness_raster : options.polygons;
   Release release{options.name.empty() ? fmt::format("release-{}", item + 1) : options.name,
-                  options.polygons.empty() ? from_raster(options, bed.grid, model) : from_polygons(options, bed.grid)};
+                  options.polygons.empty() ? from_raster(options, bed.grid, model) : from_polygons(options, bed.grid),
+                  options.direction};
   if (std::ranges::none_of(release.thickness.values, [](double t) { return t > 0; }))
     throw DataError({file.string() + ": its thickness is 0 everywhere", "the source is empty",
                      "Check the values with gdalinfo -stats or ogrinfo -al"});

@@ -15,11 +15,13 @@ namespace talus::preprocess {
 /// Volumes of a release of vertical thickness t on a bed of slope s, with cells of map area A.
 struct Volumes {
   double volume = 0;            // sum of t A [m3]
-  double volume_if_normal = 0;  // sum of t A / cos s: what the same numbers would release if taken as slope-normal [m3]
-  double projected_area = 0;    // sum of A where t > 0 [m2]
-  double true_area = 0;         // sum of A / cos s where t > 0 [m2]
-  double max_vertical = 0;      // [m]
-  double max_normal = 0;        // t cos s [m]
+  double volume_if_normal = 0;  // sum of t A / cos s: what numbers given as vertical would release as slope-normal [m3]
+  double volume_if_vertical = 0;  // sum of t A cos s: what numbers given as slope-normal would release as vertical [m3]
+  Direction given = Direction::vertical;  // how the release was given
+  double projected_area = 0;              // sum of A where t > 0 [m2]
+  double true_area = 0;                   // sum of A / cos s where t > 0 [m2]
+  double max_vertical = 0;                // [m]
+  double max_normal = 0;                  // t cos s [m]
   std::size_t cells = 0;
 };
 
@@ -34,7 +36,8 @@ std::vector<std::pair<std::string, std::string>> as_facts(const Volumes& volumes
 
 struct Release {
   std::string name;
-  Raster thickness;  // vertical [m], 0 where nothing is released
+  Raster thickness;                       // vertical [m], 0 where nothing is released
+  Direction given = Direction::vertical;  // as the recipe gives it
 };
 
 /// Read a release and bring it onto the grid of `bed`, its volume kept: a cell that a polygon covers in part gets that

@@ -137,7 +137,10 @@ void add_volumes(const SceneRasters& scene, Prepared& prepared) {
   for (const Release& release : scene.releases) {
     prepared.domain.release_names.push_back(release.name);
     prepared.by_release.emplace_back(release.name, volumes_of(release.thickness, cosine));
+    prepared.by_release.back().second.given = release.given;
   }
+  if (std::ranges::all_of(scene.releases, [](const Release& r) { return r.given == Direction::slope_normal; }))
+    prepared.total.given = Direction::slope_normal;
 }
 
 /// Refuses more points than can be numbered or held, and warns of so many that they take long.

@@ -80,6 +80,13 @@ TEST(prepare, lays_releases_onto_the_base_and_turns_slope_normal_thickness_into_
   const auto cosine = slope_cosine(scene.before);
   for (std::size_t i = 0; i < cosine.size(); ++i)
     ASSERT_NEAR(turned.domain.release_thickness.values[i], scene.bowl.values[i] / cosine[i], 1e-9);
+  const auto& [name, volumes] = turned.by_release.at(0);
+  EXPECT_NEAR(volumes.volume_if_vertical / test::volume_of(scene.bowl), 1, 1e-12);
+  const auto lines = as_lines(name, volumes);
+  EXPECT_TRUE(lines.at(0).ends_with("slope-normal thickness times area along the bed")) << lines.at(0);
+  EXPECT_TRUE(lines.at(1).starts_with("  the same thickness taken as vertical would be " +
+                                      grouped(test::volume_of(scene.bowl)) + " m3 (-"))
+      << lines.at(1);
 }
 
 TEST(prepare, warns_of_cells_without_data_inside_a_release) {
