@@ -243,7 +243,7 @@ void check_domain(const fs::path& file, const Domain& domain) {
   check_sheet(file, "before", domain.before, elevation);
   check_sheet(file, "release_thickness", domain.release_thickness, {0, limits::height, true});
   for (const auto& [name, raster] : domain.bed) {
-    if (std::find(bed_numbers.begin(), bed_numbers.end(), name) == bed_numbers.end())
+    if (std::find(bed_names.begin(), bed_names.end(), name) == bed_names.end())
       refuse_domain(file, fmt::format("the grid \"bed.{}\" is no number of [solve.base]", name));
     check_sheet(file, "bed." + name, raster, {-limits::number, limits::number, true});
   }

@@ -26,6 +26,7 @@ struct BedZone {
   std::optional<double> friction_coefficient{};  ///< mu [-]
   std::optional<double> added_coefficient{};     ///< to the mu of the rows above [-]
   std::optional<double> turbulence{};            ///< xi [m/s2]
+  std::optional<double> drag_coefficient{};      ///< k = g / xi [-]
 
   /// Declares the keys with defaults, help and what they need; messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place) {
@@ -43,23 +44,26 @@ struct BedZone {
          place + ": friction_coefficient and added_coefficient are both given", "a row sets mu or adds to it",
          "Give one");
     v.optional_number("turbulence_m_s2", turbulence, recipe::positive, "xi there, [solve.base] turbulence_m_s2");
-    need(v, friction_coefficient || added_coefficient || turbulence, place + ": it gives no number",
-         "the row would have no effect", "Give friction_coefficient, added_coefficient or turbulence_m_s2");
+    v.optional_number("drag_coefficient", drag_coefficient, recipe::positive, "k = g / xi there, in place of xi");
+    need(v, !turbulence || !drag_coefficient, place + ": turbulence_m_s2 and drag_coefficient are both given",
+         "they are one quantity", "Give one");
+    need(v, friction_coefficient || added_coefficient || turbulence || drag_coefficient, place + ": it gives no number",
+         "the row would have no effect",
+         "Give friction_coefficient, added_coefficient, turbulence_m_s2 or drag_coefficient");
   }
 };
 
 /// One [[preprocess.bed.raster]].
 struct BedRaster {
-  int number = 0;  ///< of bed_numbers
+  int number = 0;  ///< of bed_names
   std::filesystem::path file{};
 
   /// Key of the number in [solve.base].
-  std::string_view name() const { return bed_numbers.at(static_cast<std::size_t>(number)); }
+  std::string_view name() const { return bed_names.at(static_cast<std::size_t>(number)); }
   /// Declares the keys with defaults, help and what they need; messages call the entry `place`.
   void describe(recipe::Visitor& v, const std::string& place) {
-    v.one_of("number", number, {bed_numbers.begin(), bed_numbers.end()},
-             "the key of [solve.base] that it takes the place of; friction_coefficient: mu, whose arctangent is the "
-             "angle of laws that have one");
+    v.one_of("number", number, {bed_names.begin(), bed_names.end()},
+             "the key of [solve.base] that it takes the place of");
     v.path("file", file, "raster of it; no data: the number in [solve.base]");
     need(v, !file.empty(), place + ": file is not given", "there is nothing to read", "Name a raster");
   }
@@ -73,19 +77,31 @@ struct BedRasters {
   std::vector<BedZone> zones;
 
   void describe(recipe::Visitor& v) {
-    recipe::list(v, "raster", rasters, "a number of [solve.base] from place to place; may be repeated",
-                 [&](BedRaster& one, std::size_t item) {
-                   one.describe(v, fmt::format("bed.raster {}", item + 1));
-                   const auto same = [&](const BedRaster& other) { return other.number == one.number; };
-                   need(v, std::ranges::count_if(rasters, same) < 2,
-                        fmt::format("bed.raster {}: number = \"{}\" is given twice", item + 1, one.name()),
-                        "one raster would hide the other", "Leave one out");
-                 });
+    recipe::list(
+        v, "raster", rasters, "a number of [solve.base] from place to place; may be repeated",
+        [&](BedRaster& one, std::size_t item) {
+          one.describe(v, fmt::format("bed.raster {}", item + 1));
+          const auto same = [&](const BedRaster& other) { return other.number == one.number; };
+          need(v, std::ranges::count_if(rasters, same) < 2,
+               fmt::format("bed.raster {}: number = \"{}\" is given twice", item + 1, one.name()),
+               "one raster would hide the other", "Leave one out");
+          const BedForm* const form = bed_form(one.name());
+          const auto other_form = [&](const BedRaster& other) { return form && other.name() == form->of; };
+          need(v, std::ranges::none_of(rasters, other_form),
+               fmt::format("bed.raster {}: number = \"{}\" beside \"{}\"", item + 1, one.name(), form ? form->of : ""),
+               "they are one quantity in two forms", "Leave one out");
+        });
     v.path("polygons", polygons,
            "vector file whose polygons have such numbers as attributes of the same names; laid over the rasters");
     recipe::list(v, "zone", zones,
                  "a row of a table of Voellmy's numbers, laid over the rasters and the rows above; may be repeated",
                  [&](BedZone& zone, std::size_t item) { zone.describe(v, fmt::format("bed.zone {}", item + 1)); });
+    const auto with = [&](std::optional<double> BedZone::*number) {
+      return std::ranges::any_of(zones, [&](const BedZone& zone) { return (zone.*number).has_value(); });
+    };
+    need(v, !with(&BedZone::turbulence) || !with(&BedZone::drag_coefficient),
+         "bed.zone: some rows give turbulence_m_s2, others drag_coefficient", "they are one quantity",
+         "Give one of them in all rows");
   }
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -47,30 +48,36 @@ double mixed(double before, double after, double share) {
   return (1 - share) * before + share * after;
 }
 
-/// Sets the coefficient of a zone, or adds to it; the raster holds angles [deg].
-void lay_coefficient(const BedZone& zone, const std::string& place, const std::vector<double>& share, Raster& angle) {
+bool is_angle(std::string_view number) { return number.ends_with("_angle_deg"); }
+
+/// Sets the coefficient of a zone, or adds to it. The raster holds angles [deg], or coefficients.
+void lay_coefficient(const BedZone& zone, const std::string& place, const std::vector<double>& share,
+                     std::pair<std::string, Raster>& bed) {
+  auto& [number, raster] = bed;
+  const bool angles = is_angle(number);
   std::vector<char> unknown(share.size()), negative(share.size());
   for (std::size_t i = 0; i < share.size(); ++i) {
     if (!(share[i] > 0)) continue;
-    const double before = std::tan(angle.values[i] / degrees);
+    double& value = raster.values[i];
+    const double before = angles ? std::tan(value / degrees) : value;
     const double after = zone.friction_coefficient ? *zone.friction_coefficient : before + *zone.added_coefficient;
     unknown[i] = std::isnan(after);
     negative[i] = after < 0;
-    angle.values[i] = std::atan(mixed(before, after, share[i])) * degrees;
+    const double now = mixed(before, after, share[i]);
+    value = angles ? std::atan(now) * degrees : now;
   }
-  refuse_cells(angle.grid, unknown, place,
+  refuse_cells(raster.grid, unknown, place,
                {"ground where added_coefficient has nothing to add to", "no row above gives mu there",
                 "Give a row with friction_coefficient for all of it before this one"});
-  refuse_cells(angle.grid, negative, place, {"ground where mu falls below 0", "friction would push", "Add less"});
+  refuse_cells(raster.grid, negative, place, {"ground where mu falls below 0", "friction would push", "Add less"});
 }
 
 constexpr std::size_t shapefile_name = 10;  ///< letters that a shapefile keeps of an attribute's name
 
-bool is_angle(std::string_view number) { return number.ends_with("_angle_deg"); }
-
 /// What is wrong with a value; empty where nothing is.
 std::string fault_of(std::string_view number, double value) {
-  constexpr std::array<std::string_view, 3> positive{"turbulence_m_s2", "characteristic_speed_m_s", "layer_length_m"};
+  constexpr std::array<std::string_view, 4> positive{"turbulence_m_s2", "drag_coefficient", "characteristic_speed_m_s",
+                                                     "layer_length_m"};
   if (!std::isfinite(value)) return "it is no number";
   if (is_angle(number)) return value >= 0 && value < 90 ? "" : "an angle lies from 0 to below 90";
   if (number == "pore_pressure_ratio") return value >= 0 && value <= 1 ? "" : "a ratio lies between 0 and 1";
@@ -85,14 +92,20 @@ void check_values(const std::filesystem::path& file, const std::vector<MapPolygo
   for (std::size_t p = 0; p < polygons.size(); ++p) {
     const std::string& name = polygons[p].name;
     const std::string feature = fmt::format("polygon {}", p + 1) + (name.empty() ? "" : " (\"" + name + "\")");
+    std::set<std::string_view> given;
     for (const auto& [attribute, value] : polygons[p].numbers) {
       const std::string_view number = bed_number_of(attribute);
       if (number.empty()) continue;
       any = true;
+      given.insert(number);
       if (const std::string why = fault_of(number, value); !why.empty())
         faults.push_back({fmt::format("{}: {}: {} = {:g}", file.string(), feature, attribute, value), why,
                           "Mend the attribute, or leave it empty for the number in [solve.base]"});
     }
+    for (const BedForm& form : bed_forms)
+      if (given.contains(form.key) && given.contains(form.of))
+        faults.push_back({fmt::format("{}: {}: {} beside {}", file.string(), feature, form.key, form.of),
+                          "they are one quantity in two forms", "Leave one of them empty"});
   }
   const auto wanted = [](std::string_view attribute) { return !bed_number_of(attribute).empty(); };
   for (const TextField& text : text_fields(file, wanted))
@@ -136,7 +149,9 @@ struct PolygonNumbers {
   const std::vector<double>* share;
 };
 
-void lay_number(std::string_view number, const std::vector<PolygonNumbers>& patches, Raster& raster) {
+/// Lays a number over a raster that holds it as `held`: as it is, or in another form with the same scale of means.
+void lay_number(std::string_view number, const std::vector<PolygonNumbers>& patches, std::string_view held,
+                Raster& raster) {
   for (std::size_t i = 0; i < raster.values.size(); ++i) {
     double covered = 0, sum = 0;
     for (const PolygonNumbers& patch : patches) {
@@ -146,19 +161,28 @@ void lay_number(std::string_view number, const std::vector<PolygonNumbers>& patc
     if (!(covered > 0)) continue;
     const double rest = std::max(1 - covered, 0.0);
     if (std::isnan(raster.values[i])) {
-      if (covered >= 0.5) raster.values[i] = from_mean(number, sum / covered);
+      if (covered >= 0.5) raster.values[i] = from_mean(held, sum / covered);
     } else {
-      raster.values[i] = from_mean(number, sum + rest * to_mean(number, raster.values[i]));
+      raster.values[i] = from_mean(held, sum + rest * to_mean(held, raster.values[i]));
     }
   }
 }
 
-/// The raster of a number of the bed, made without values where there is none yet.
-Raster& raster_named(std::vector<std::pair<std::string, Raster>>& bed, std::string_view name, const MapGrid& grid) {
-  for (auto& [other, raster] : bed)
-    if (other == name) return raster;
-  bed.emplace_back(name, Raster{grid, std::vector<double>(grid.count(), nan)});
-  return bed.back().second;
+/// Whether two numbers are an angle and its tangent, or one number.
+bool are_one(std::string_view a, std::string_view b) {
+  const auto is_form = [](std::string_view key, std::string_view of) {
+    const BedForm* const form = bed_form(key);
+    return form != nullptr && is_angle(of) && form->of == of;
+  };
+  return a == b || is_form(a, b) || is_form(b, a);
+}
+
+/// The raster of a number of the bed, made without values where there is none yet. Of an angle it may hold the tangent.
+std::pair<std::string, Raster>& raster_named(std::vector<std::pair<std::string, Raster>>& bed, std::string_view name,
+                                             const MapGrid& grid) {
+  for (auto& one : bed)
+    if (are_one(one.first, name)) return one;
+  return bed.emplace_back(name, Raster{grid, std::vector<double>(grid.count(), nan)});
 }
 
 }  // namespace
@@ -177,15 +201,20 @@ void lay_bed_zones(const std::vector<BedZone>& zones, const Raster& ground,
       log_info(fmt::format("{}: {:.0f} m2", place, cells * ground.grid.cell * ground.grid.cell));
     if (zone.friction_coefficient || zone.added_coefficient)
       lay_coefficient(zone, place, share, raster_named(bed, "friction_angle_deg", ground.grid));
-    if (!zone.turbulence) continue;
-    Raster& turbulence = raster_named(bed, "turbulence_m_s2", ground.grid);
-    for (std::size_t i = 0; i < share.size(); ++i)
-      if (share[i] > 0) turbulence.values[i] = 1 / mixed(1 / turbulence.values[i], 1 / *zone.turbulence, share[i]);
+    const auto lay = [&](std::string_view number, double value) {
+      Raster& raster = raster_named(bed, number, ground.grid).second;
+      for (std::size_t i = 0; i < share.size(); ++i)
+        if (share[i] > 0)
+          raster.values[i] =
+              from_mean(number, mixed(to_mean(number, raster.values[i]), to_mean(number, value), share[i]));
+    };
+    if (zone.turbulence) lay("turbulence_m_s2", *zone.turbulence);
+    if (zone.drag_coefficient) lay("drag_coefficient", *zone.drag_coefficient);
   }
 }
 
 std::string_view bed_number_of(std::string_view attribute) {
-  for (const std::string_view number : bed_numbers) {
+  for (const std::string_view number : bed_names) {
     if (attribute == number) return number;
     if (attribute.size() == shapefile_name && attribute == number.substr(0, shapefile_name)) return number;
   }
@@ -200,7 +229,7 @@ void lay_bed_polygons(const std::filesystem::path& file, const Raster& ground,
   shares.reserve(polygons.size());
   for (const MapPolygon& polygon : polygons) shares.push_back(coverage_within(ground.grid, polygon));
   refuse_overlap(file, ground.grid, shares);
-  for (const std::string_view number : bed_numbers) {
+  for (const std::string_view number : bed_names) {
     std::vector<PolygonNumbers> patches;
     double area = 0;
     for (std::size_t p = 0; p < polygons.size(); ++p) {
@@ -211,7 +240,8 @@ void lay_bed_polygons(const std::filesystem::path& file, const Raster& ground,
       }
     }
     if (patches.empty()) continue;
-    lay_number(number, patches, raster_named(bed, number, ground.grid));
+    auto& [held, raster] = raster_named(bed, number, ground.grid);
+    lay_number(number, patches, held, raster);
     log_info(fmt::format("[preprocess.bed] polygons: {} of {} polygons, {:.0f} m2", number, patches.size(), area));
     if (!(area > 0))
       warn("polygons-without-ground", fmt::format("{}: no ground of the scene lies in its polygons", file.string()));

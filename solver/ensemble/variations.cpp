@@ -25,7 +25,9 @@ constexpr double nearly_one = 1 + 1e-6;  // times the stiffness, in the row of t
 /// Numbers of the bed that are friction, as angles or coefficients.
 constexpr std::string_view friction_angles[] = {"friction_angle_deg", "stop_angle_deg", "steepest_angle_deg",
                                                 "start_angle_deg"};
-constexpr std::string_view friction_coefficients[] = {"peak_coefficient", "steady_coefficient", "friction_coefficient"};
+constexpr std::string_view friction_coefficients[] = {"peak_coefficient",     "steady_coefficient",
+                                                      "friction_coefficient", "stop_coefficient",
+                                                      "steepest_coefficient", "start_coefficient"};
 constexpr std::string_view turbulence = "turbulence_m_s2";
 
 template <std::size_t count>
@@ -245,7 +247,8 @@ void Variations::change_bed(Variation& one, const BedChange& change) const {
     const double changed = change(key, value);
     if (changed == value) continue;
     value = changed;
-    one.values.push_back(set_to(fmt::format("solve.base.{}", key), changed));
+    const auto [as, given] = base_.base.as_given(key, changed, base_.gravity_size());
+    one.values.push_back(set_to(fmt::format("solve.base.{}", as), given));
   }
   if (!domain_.bed.empty()) one.change_bed = change;
 }
@@ -264,7 +267,9 @@ void Variations::friction(Variation& one, bool more) const {
 void Variations::drag(Variation& one, bool more) const {
   if (!base_.base.uses(turbulence)) return;
   const double factor = 1 + (more ? 1 : -1) * budget_.drag_doubt;
-  change_bed(one, [factor](std::string_view key, double value) { return key == turbulence ? value / factor : value; });
+  change_bed(one, [factor](std::string_view key, double value) {
+    return key == turbulence ? value / factor : key == "drag_coefficient" ? value * factor : value;
+  });
   one.words =
       fmt::format("{:g} % {}", 100 * budget_.drag_doubt, more ? "more" : "less") + changed_words(one, settled_.size());
 }

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/options/bed.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "solver/options/solve.hpp"
 
 namespace talus::solver {
@@ -33,6 +37,15 @@ void BaseOptions::describe(recipe::Visitor& v) {
   const std::string name = law_name();
   const LawTable shown{.name = "[solve.base]", .chosen = name};
   OptionsOfLaws::describe(v, shown);
+  for (const auto& [form, given] : forms()) {
+    if (!*given || uses(form.key) || !uses(form.of)) continue;
+    std::optional<double> number;  // settled options have no form: it is read here alone, beside the form
+    v.optional_number(form.of, number, recipe::any, "");
+    if (number) given_twice = form.key;
+  }
+  v.needs(given_twice.empty(), {"[solve.base] " + given_twice + " beside " +
+                                    (given_twice.empty() ? "" : std::string(bed_form(given_twice)->of)),
+                                "they are one quantity in two forms", "Leave one of them out"});
   FrictionLaws::each([&](auto own) { own.check(v, *this, shown); });
   v.number("cohesion_Pa", cohesion, recipe::not_negative,
            "traction besides friction, wherever the mass touches its bed");
@@ -50,10 +63,49 @@ void BaseOptions::describe(recipe::Visitor& v) {
            "it is the depth up to which \"thin\" holds columns", "Leave it out, or take separation = \"thin\""});
 }
 
+std::array<GivenForm, bed_forms.size()> BaseOptions::forms() {
+  return {{{bed_forms[0], &friction_coefficient},
+           {bed_forms[1], &stop_coefficient},
+           {bed_forms[2], &steepest_coefficient},
+           {bed_forms[3], &start_coefficient},
+           {bed_forms[4], &drag_coefficient}}};
+}
+
 double* BaseOptions::named(std::string_view key) {
+  if (key == bed_forms[0].key) return &friction_coefficient.emplace(mu());
   NumberFinder finder(key);
   describe(finder);
   return finder.found();
+}
+
+bool BaseOptions::takes(std::string_view key) const {
+  return uses(key) || std::ranges::any_of(bed_forms, [&](const BedForm& form) {
+           return (key == form.key && uses(form.of)) || (key == form.of && uses(form.key));
+         });
+}
+
+void BaseOptions::settle(double gravity) {
+  for (const auto& [form, given] : forms()) {
+    if (!*given || uses(form.key) || !uses(form.of)) continue;
+    *named(form.of) = number_of(form, **given, gravity);
+    given_as.emplace_back(form.key);
+    given->reset();
+  }
+}
+
+std::pair<std::string_view, double> BaseOptions::as_given(std::string_view key, double value, double gravity) const {
+  for (const BedForm& form : bed_forms)
+    if (form.of == key && std::ranges::find(given_as, form.key) != given_as.end())
+      return {form.key, form_of(form, value, gravity)};
+  return {key, value};
+}
+
+double number_of(const BedForm& form, double value, double gravity) {
+  return form.key == "drag_coefficient" ? gravity / value : std::atan(value) * 180 / std::numbers::pi;
+}
+
+double form_of(const BedForm& form, double number, double gravity) {
+  return form.key == "drag_coefficient" ? gravity / number : std::tan(number * (std::numbers::pi / 180));
 }
 
 bool BaseOptions::uses(std::string_view key) const {
@@ -61,7 +113,11 @@ bool BaseOptions::uses(std::string_view key) const {
 }
 
 std::vector<std::string> BaseOptions::idle() const {
-  return idle_keys(*this, [&](std::string_view key) { return uses(key); });
+  std::vector<std::string> idle = idle_keys(*this, [&](std::string_view key) { return uses(key); });
+  BaseOptions copy = *this;
+  for (const auto& [form, given] : copy.forms())
+    if (*given && !takes(form.key)) idle.emplace_back(form.key);
+  return idle;
 }
 
 bool BaseOptions::asks_column() const {

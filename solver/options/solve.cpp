@@ -141,6 +141,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "shaking", shaking, "the ground shakes: an accelerogram as body force", *this);
   MassOptions::describe(v);
   recipe::table(v, "base", base, "the bed under it");
+  base.settle(gravity_size() > 0 ? gravity_size() : 1);
   need_separation(v, *this);
   need_columns(v, *this);
   v.needs(!accuracy || !cfl,

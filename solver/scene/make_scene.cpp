@@ -71,9 +71,21 @@ void check_release_names(const Scene& scene, std::vector<Fault>& faults) {
   }
 }
 
-/// Whether a raster holds mu for a law that takes its angle instead.
-bool is_tangent(const BaseOptions& base, std::string_view raster) {
-  return raster == "friction_coefficient" && !base.uses(raster) && base.uses("friction_angle_deg");
+/// A number of the bed that a raster gives.
+struct PlacedNumber {
+  double* value;                     ///< null where the law takes none of the raster
+  std::function<double(double)> of;  ///< what the raster holds
+};
+
+PlacedNumber number_for(BaseOptions& base, std::string_view raster, double gravity) {
+  if (base.uses(raster)) return {base.named(raster), [](double value) { return value; }};
+  for (const BedForm& form : bed_forms) {
+    if (raster == form.key && base.uses(form.of))
+      return {base.named(form.of), [form, gravity](double value) { return number_of(form, value, gravity); }};
+    if (raster == form.of && base.uses(form.key))
+      return {base.named(form.key), [form, gravity](double value) { return form_of(form, value, gravity); }};
+  }
+  return {nullptr, {}};
 }
 
 /// The bed where domain.vdb has rasters of it: their values, the recipe's elsewhere.
@@ -87,7 +99,7 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
 /// Refuses rasters that the law does not look at, which are a mistake in the recipe.
 void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fault>& faults) {
   for (const auto& [name, raster] : domain.bed) {
-    if (options.base.uses(name) || is_tangent(options.base, name)) continue;
+    if (options.base.takes(name)) continue;
     faults.push_back({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name),
                       "the raster would have no effect",
                       "Name the law that does, or leave the raster out and run talus-preprocess again"});
@@ -157,21 +169,14 @@ void lay_sides(ParticleState& points, std::size_t p, const GridShape& shape, con
 void each_bed(const Domain& domain, const SolveOptions& options,
               const std::function<void(const BaseFriction<double>&)>& visit) {
   SolveOptions here = options;
-  struct Number {
-    double* value;
-    bool tangent;  ///< of an angle in degrees
-  };
-  std::vector<Number> numbers;
-  for (const auto& [name, raster] : domain.bed) {
-    const bool tangent = is_tangent(options.base, name);
-    numbers.push_back({here.base.named(tangent ? "friction_angle_deg" : name), tangent});
-  }
+  std::vector<PlacedNumber> numbers;
+  for (const auto& [name, raster] : domain.bed) numbers.push_back(number_for(here.base, name, options.gravity_size()));
+  const BaseOptions everywhere = here.base;
   for (std::size_t column = 0; column < domain.grid.count(); ++column) {
-    here.base = options.base;
+    here.base = everywhere;
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       const double value = domain.bed[n].second.values[column];
-      const auto [number, tangent] = numbers[n];
-      if (number && std::isfinite(value)) *number = tangent ? std::atan(value) * 180 / std::numbers::pi : value;
+      if (numbers[n].value != nullptr && std::isfinite(value)) *numbers[n].value = numbers[n].of(value);
     }
     visit(make_base_friction<double>(here));
   }

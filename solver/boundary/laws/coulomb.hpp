@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "solver/boundary/laws/basal_law.hpp"
 
@@ -60,12 +61,15 @@ struct Voellmy : BasalLaw {
 
   /// The keys of the law; the friction angle is that of Coulomb::Options.
   struct Options {
-    double turbulence = 500;      ///< xi [m/s2]
-    double bartelt_cohesion = 0;  ///< N_0 [Pa]
+    double turbulence = 500;                 ///< xi [m/s2]
+    std::optional<double> drag_coefficient;  ///< k = g / xi [-]
+    double bartelt_cohesion = 0;             ///< N_0 [Pa]
 
     void describe(recipe::Visitor& v, const LawTable&) {
       v.number("turbulence_m_s2", turbulence, recipe::positive,
                "voellmy: xi; a traction of rho g v^2 / xi besides friction");
+      v.optional_number("drag_coefficient", drag_coefficient, recipe::positive,
+                        "voellmy: k = g / xi, as in MoT-Voellmy, in place of turbulence_m_s2");
       v.number("bartelt_cohesion_Pa", bartelt_cohesion, recipe::not_negative,
                "voellmy: N_0 of Bartelt et al. 2015 (the cohesion of RAMMS); a traction of (1 - mu) N_0 (1 - exp(-N / "
                "N_0)) besides, N the weight over the area of bed");

@@ -19,12 +19,13 @@ struct Pouliquen : BasalLaw {
 
   /// The keys of the law; the defaults are those of glass beads of 0.5 mm (Pouliquen & Forterre 2002).
   struct Options {
-    double stop_angle = 21;          ///< theta_1 [deg]
-    double steepest_angle = 30.7;    ///< theta_2 [deg]
-    double start_angle = 22.2;       ///< theta_3 [deg]
-    double layer_length = 0.00065;   ///< L [m]
-    double flow_rule_slope = 0.136;  ///< beta [-]
-    double flow_rule_offset = 0;     ///< Gamma [-]
+    double stop_angle = 21;                                                           ///< theta_1 [deg]
+    double steepest_angle = 30.7;                                                     ///< theta_2 [deg]
+    double start_angle = 22.2;                                                        ///< theta_3 [deg]
+    std::optional<double> stop_coefficient, steepest_coefficient, start_coefficient;  ///< their tangents [-]
+    double layer_length = 0.00065;                                                    ///< L [m]
+    double flow_rule_slope = 0.136;                                                   ///< beta [-]
+    double flow_rule_offset = 0;                                                      ///< Gamma [-]
 
     /// The method declares the keys with defaults, help and, where the law is chosen, what they need of one another.
     void describe(recipe::Visitor& v, const LawTable& table) {
@@ -35,6 +36,12 @@ struct Pouliquen : BasalLaw {
                "pouliquen: theta_2, the slope on which the thinnest flow goes on");
       v.number("start_angle_deg", start_angle, steepness,
                "pouliquen: theta_3, the slope on which a layer of any depth stays at rest");
+      v.optional_number("stop_coefficient", stop_coefficient, recipe::not_negative,
+                        "pouliquen: mu_1, whose arctangent is stop_angle_deg");
+      v.optional_number("steepest_coefficient", steepest_coefficient, recipe::not_negative,
+                        "pouliquen: mu_2, that of steepest_angle_deg");
+      v.optional_number("start_coefficient", start_coefficient, recipe::not_negative,
+                        "pouliquen: mu_3, that of start_angle_deg");
       v.number("layer_length_m", layer_length, recipe::positive,
                "pouliquen: L, the depth over which the bed's roughness is felt, a few grains");
       v.number("flow_rule_slope", flow_rule_slope, recipe::positive,

@@ -4,6 +4,8 @@
 // turbulence, and one that acts at any speed (T13c; Sampl & Zwinger 2004).
 #pragma once
 
+#include <optional>
+
 #include "solver/boundary/laws/basal_law.hpp"
 
 namespace talus {
@@ -15,29 +17,31 @@ struct Samosat : BasalLaw {
 
   /// mu, tau_0, R_s0, kappa, R and B of com1DFA. The first two are keys; all its sets of numbers share the others.
   struct Options {
-    double friction_coefficient = 0.155;  ///< mu, at high speed [-]
-    double minimum_shear = 0;             ///< tau_0 [Pa]
-    double weakening_number = 0.222;      ///< R_s0 [-]
-    double karman_constant = 0.43;        ///< kappa [-]
-    double roughness = 0.05;              ///< R [m]
-    double drag_offset = 4.13;            ///< B [-]
+    std::optional<double> friction_coefficient;  ///< mu, at high speed [-]; none: 0.155
+    double minimum_shear = 0;                    ///< tau_0 [Pa]
+    double weakening_number = 0.222;             ///< R_s0 [-]
+    double karman_constant = 0.43;               ///< kappa [-]
+    double roughness = 0.05;                     ///< R [m]
+    double drag_offset = 4.13;                   ///< B [-]
 
+    double mu() const { return friction_coefficient.value_or(0.155); }
     void describe(recipe::Visitor& v, const LawTable&) {
-      v.number("friction_coefficient", friction_coefficient, recipe::not_negative,
-               "samosat: mu, at high speed; at rest it is twice as much");
+      v.optional_number("friction_coefficient", friction_coefficient, recipe::not_negative,
+                        "samosat: mu at high speed, twice as much at rest (none: 0.155); coulomb, voellmy: mu, whose "
+                        "arctangent is friction_angle_deg");
       v.number("minimum_shear_Pa", minimum_shear, recipe::not_negative, "samosat: tau_0, a traction at any speed");
     }
   };
   static bool uses(std::string_view key) { return key == "friction_coefficient" || key == "minimum_shear_Pa"; }
   template <class All>
   static std::string words(const All& o) {
-    return "samosat, mu = " + six_digits(o.friction_coefficient) + ", tau_0 = " + six_digits(o.minimum_shear) +
+    return "samosat, mu = " + six_digits(o.mu()) + ", tau_0 = " + six_digits(o.minimum_shear) +
            " Pa, R_s0 = " + six_digits(o.weakening_number) + ", kappa = " + six_digits(o.karman_constant) +
            ", R = " + six_digits(o.roughness) + " m, B = " + six_digits(o.drag_offset);
   }
   template <class All>
   static std::string sentence(const All& o) {
-    return "SamosAT's law (Sampl & Zwinger 2004), mu = " + six_digits(o.friction_coefficient) +
+    return "SamosAT's law (Sampl & Zwinger 2004), mu = " + six_digits(o.mu()) +
            ", \u03c4\u2080 = " + six_digits(o.minimum_shear) + " Pa, Rs\u2080 = " + six_digits(o.weakening_number) +
            ", \u03ba = " + six_digits(o.karman_constant) + ", R = " + six_digits(o.roughness) +
            " m, B = " + six_digits(o.drag_offset);
@@ -46,7 +50,7 @@ struct Samosat : BasalLaw {
   enum Number { mu, shear, count };  ///< as kernels see them: mu [-], tau_0 [Pa]
   template <class All>
   static void numbers(const All& o, const BedSetting& setting, double* n) {
-    n[mu] = setting.borne * o.friction_coefficient;
+    n[mu] = setting.borne * o.mu();
     n[shear] = o.minimum_shear;
   }
   /// Those of the scene: R_s0, 1/kappa, B [-], R [m], density [kg/m3].

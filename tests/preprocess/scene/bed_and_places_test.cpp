@@ -67,11 +67,28 @@ TEST_F(BedPolygons, lie_over_rasters_by_the_part_that_they_cover) {
   EXPECT_NEAR(number_at(bed, "turbulence_m_s2", 6, 5), 2000, 1e-9);
 }
 
+TEST_F(BedPolygons, give_mu_and_k_and_lie_over_the_other_form) {
+  const Raster ground = plain();
+  const auto file = write_table(
+      scratch, "friction_coefficient,drag_coefficient,WKT\n0.4,0.005," + cells(ground.grid, 0, 0, 4.5, 10) + "\n");
+  const double angle = std::atan(0.2) * 180 / std::numbers::pi;
+  Bed bed{{"friction_angle_deg", test::raster_of(ground.grid, [=](double, double) { return angle; })}};
+  lay_bed_polygons(file, ground, bed);
+  ASSERT_EQ(bed.size(), 2U);
+  EXPECT_NEAR(tangent(number_at(bed, "friction_angle_deg", 2, 5)), 0.4, 1e-12);
+  EXPECT_NEAR(tangent(number_at(bed, "friction_angle_deg", 4, 5)), 0.3, 1e-12) << "half covered";
+  EXPECT_NEAR(number_at(bed, "drag_coefficient", 2, 5), 0.005, 1e-15);
+  const auto twice = write_table(
+      scratch, "friction_coefficient,friction_angle_deg,WKT\n0.4,20," + cells(ground.grid, 0, 0, 4, 10) + "\n");
+  EXPECT_TRUE(holds(test::fault_of<DataError>([&] { lay_bed_polygons(twice, ground, bed); }),
+                    {"polygon 1: friction_coefficient beside friction_angle_deg"}));
+}
+
 TEST_F(BedPolygons, are_found_by_what_a_shapefile_leaves_of_a_name) {
   EXPECT_EQ(bed_number_of("friction_a"), "friction_angle_deg");
   EXPECT_EQ(bed_number_of("turbulence"), "turbulence_m_s2");
   EXPECT_EQ(bed_number_of("friction"), "");
-  for (const std::string_view number : bed_numbers) {
+  for (const std::string_view number : bed_names) {
     EXPECT_EQ(bed_number_of(number), number);
     if (number.size() > 10) {
       EXPECT_EQ(bed_number_of(number.substr(0, 10)), number) << "two keys begin alike";
@@ -158,6 +175,19 @@ TEST(BedZones, lie_over_rasters_and_add_to_nothing_that_is_unknown) {
   EXPECT_TRUE(holds(test::fault_of<DataError>([&] { laid(o); }), {"falls below 0"}));
 }
 
+TEST(BedZones, lie_over_rasters_of_mu_and_give_k) {
+  const Raster ground = rising();
+  const auto flat = [&](double value) { return test::raster_of(ground.grid, [=](double, double) { return value; }); };
+  BedRasters o;
+  o.zones.push_back({.added_coefficient = 0.1, .drag_coefficient = 0.004});
+  o.zones.push_back({.to = 1050, .friction_coefficient = 0.15});
+  const Bed bed = laid(o, {{"friction_coefficient", flat(0.2)}, {"drag_coefficient", flat(0.01)}});
+  ASSERT_EQ(bed.size(), 2u);
+  EXPECT_NEAR(number_at(bed, "friction_coefficient", 8, 4), 0.3, 1e-15);
+  EXPECT_EQ(number_at(bed, "friction_coefficient", 4, 4), 0.15);
+  EXPECT_EQ(number_at(bed, "drag_coefficient", 4, 4), 0.004);
+}
+
 TEST(BedZones, reach_the_domain) {
   test::Scene scene;
   scene.options.bed.zones.push_back({.friction_coefficient = 0.4});
@@ -176,6 +206,7 @@ TEST(BedZones, say_what_they_need) {
   EXPECT_TRUE(holds(fault_with({}), {"gives no number"}));
   EXPECT_TRUE(holds(fault_with({.from = 5, .to = 4, .turbulence = 1}), {"from_m = 5 is not below"}));
   EXPECT_TRUE(holds(fault_with({.friction_coefficient = 0.1, .added_coefficient = 0.1}), {"both given"}));
+  EXPECT_TRUE(holds(fault_with({.turbulence = 400, .drag_coefficient = 0.02}), {"both given"}));
   o.bed.zones = {{.polygons = "/forest.gpkg", .from = 900, .to = 1500, .added_coefficient = 0.02, .turbulence = 400}};
   test::expect_read_as_written(o);
 }

@@ -1,6 +1,11 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What keys of [solve], of inflows and of shaking need of one another, and the texts of the refusals.
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
 #include "solver/options/implicit.hpp"
 #include "solver/options/inflow.hpp"
 #include "solver/options/loads.hpp"
@@ -35,6 +40,44 @@ TEST(SolveOptions, vectors_and_boxes_have_their_number_of_values) {
       "[[solve.load]] extent_m or force_N has the wrong number of values (a box has six, a force three). Give "
       "extent_m = [west, south, east, north, bottom, top] and force_N = [east, north, up]";
   EXPECT_EQ(faults("[[solve.load]]\nextent_m = [1.0]\n[[solve.load]]\nforce_N = [1.0]"), load + "\n" + load);
+}
+
+/// What a recipe of [solve.base] says of the bed.
+BaseOptions base_of(const std::string& keys) {
+  const test::Scratch scratch;
+  return recipe::Recipe(scratch.write("r.toml", "[solve.base]\n" + keys)).read<SolveOptions>("solve").base;
+}
+
+TEST(SolveOptions, take_mu_for_an_angle_and_k_for_xi) {
+  const auto expect_mu = [](double angle, double mu) {
+    EXPECT_NEAR(std::tan(angle * std::numbers::pi / 180), mu, 4e-16);
+  };
+  for (const char* law : {"coulomb", "voellmy"})
+    for (const double mu : {0.0, 0.155, 0.3, 1.0}) {
+      const BaseOptions base =
+          base_of(fmt::format("law = \"{}\"\nfriction_coefficient = {}", law, recipe::toml_number(mu)));
+      expect_mu(base.friction_angle, mu);
+      EXPECT_TRUE(base.idle().empty()) << law;
+    }
+  EXPECT_EQ(base_of("law = \"samosat\"\nfriction_coefficient = 0.2").mu(), 0.2);
+  EXPECT_EQ(base_of("law = \"samosat\"").mu(), 0.155);
+  const BaseOptions grains =
+      base_of("law = \"pouliquen\"\nstop_coefficient = 0.3\nsteepest_coefficient = 0.6\nstart_coefficient = 0.35");
+  expect_mu(grains.stop_angle, 0.3);
+  expect_mu(grains.steepest_angle, 0.6);
+  expect_mu(grains.start_angle, 0.35);
+  const BaseOptions k = base_of("law = \"voellmy\"\ndrag_coefficient = 0.004");
+  EXPECT_DOUBLE_EQ(k.turbulence, SolveOptions{}.gravity_size() / 0.004);
+  EXPECT_EQ(k.as_given("turbulence_m_s2", k.turbulence, SolveOptions{}.gravity_size()).first, "drag_coefficient");
+}
+
+TEST(SolveOptions, take_one_form_of_a_number) {
+  expect_words(faults("[solve.base]\nfriction_angle_deg = 20.0\nfriction_coefficient = 0.3"),
+               "[solve.base] friction_coefficient beside friction_angle_deg (they are one quantity");
+  expect_words(faults("[solve.base]\nlaw = \"voellmy\"\nturbulence_m_s2 = 500.0\ndrag_coefficient = 0.02"),
+               "[solve.base] drag_coefficient beside turbulence_m_s2");
+  EXPECT_EQ(faults("[solve.base]\nlaw = \"samosat\"\nfriction_angle_deg = 25.0\nfriction_coefficient = 0.3"), "");
+  EXPECT_EQ(base_of("drag_coefficient = 0.004").idle(), std::vector<std::string>{"drag_coefficient"});
 }
 
 TEST(SolveOptions, the_energy_budget_needs_explicit_steps_and_contact_at_nodes) {

@@ -134,6 +134,40 @@ TEST(MakeScene, a_raster_of_mu_gives_the_angle_of_a_law_that_has_one) {
                           {"friction_coefficient", "does not use it"}));
 }
 
+/// The numbers of the bed in every cell for a law, with a raster of 0.3 and 0.4 under this name.
+std::vector<double> bed_with(FrictionLaw law, const std::string& name, double west, double east) {
+  Domain d = filled(ground(12, 12, 10, 5, flat), {40, 60, 40, 60, 0, 5});
+  Raster raster{d.grid, std::vector<double>(d.grid.count(), west)};
+  for (int row = 0; row < d.grid.rows; ++row) raster.at(9, row) = east;
+  d.bed.emplace_back(name, raster);
+  SolveOptions o;
+  o.base.law = law;
+  std::vector<double> all;
+  for (const Bed<double>& bed : make_scene(d, o).bed)
+    all.insert(all.end(), std::begin(bed.numbers), std::end(bed.numbers));
+  return all;
+}
+
+TEST(MakeScene, rasters_of_either_form_make_one_bed_with_every_law) {
+  const auto angle = [](double mu) { return std::atan(mu) / degree; };
+  const auto xi = [](double k) { return SolveOptions{}.gravity_size() / k; };
+  const auto expect_one = [](const std::vector<double>& a, const std::vector<double>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t n = 0; n < a.size(); ++n) EXPECT_NEAR(a[n], b[n], 1e-14 * std::abs(b[n]));
+  };
+  for (const FrictionLaw law : {FrictionLaw::coulomb, FrictionLaw::voellmy, FrictionLaw::samosat})
+    expect_one(bed_with(law, "friction_coefficient", 0.3, 0.4),
+               bed_with(law, "friction_angle_deg", angle(0.3), angle(0.4)));
+  for (const char* number : {"stop", "steepest", "start"})
+    expect_one(bed_with(FrictionLaw::pouliquen, std::string(number) + "_coefficient", 0.5, 0.55),
+               bed_with(FrictionLaw::pouliquen, std::string(number) + "_angle_deg", angle(0.5), angle(0.55)));
+  expect_one(bed_with(FrictionLaw::voellmy, "drag_coefficient", 0.004, 0.01),
+             bed_with(FrictionLaw::voellmy, "turbulence_m_s2", xi(0.004), xi(0.01)));
+  EXPECT_TRUE(
+      test::holds(test::fault_of<RecipeError>([&] { bed_with(FrictionLaw::coulomb, "drag_coefficient", 1, 1); }),
+                  {"drag_coefficient", "does not use it"}));
+}
+
 TEST(PlaceInCells, is_the_nearest_node_and_what_is_left) {
   int cell = 0;
   double offset = 0;
