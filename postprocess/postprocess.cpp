@@ -120,7 +120,8 @@ void write_results(StageContext& context, Job& job) {
   remove_outdated_outputs(context.out);
   const Files files = write_outputs(job);
   context.results.insert(context.results.end(), files.begin(), files.end());
-  log_info("\n" + to_table(job.score));
+  log_info("\n" + to_table(headline_of(job.score, context.out / "score.txt")));
+  log_detail(to_table(job.score));
 }
 
 /// Whether neither [solve] nor the rasters of the domain say what the bed's friction is.

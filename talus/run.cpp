@@ -163,6 +163,16 @@ void require_run(const fs::path& folder) {
                         "Name the folder of results of a run: what --out was, or out beside its recipe"});
 }
 
+/// The page to look at, the last one written; the folder where there is none.
+fs::path page_in(const fs::path& folder) {
+  fs::path page = folder;
+  for (const char* name : {"report.html", "ensemble.html", "slides.html"})
+    if (const fs::path file = folder / name;
+        fs::exists(file) && (page == folder || fs::last_write_time(file) > fs::last_write_time(page)))
+      page = file;
+  return page;
+}
+
 /// What was used in a folder is a recipe of it.
 fs::path recipe_in(const fs::path& folder) {
   for (const char* name : {"postprocess.used.toml", "solve.used.toml"})
@@ -185,7 +195,7 @@ int run_scene(const Request& request) {
     if (const int code = bring_up_to_date(request, stage); code != 0) return code;
   }
   if (request.plan) return print_plan(request);
-  if (!inner) log_info(fmt::format("{}: results in {}", recipe.scene_name(), request.out.string()));
+  if (!inner) log_info(fmt::format("{}: {}", recipe.scene_name(), page_in(request.out).string()));
   return 0;
 }
 

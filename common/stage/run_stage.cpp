@@ -336,9 +336,19 @@ int report_faults(const std::string& program, const StageOutcome& outcome) {
   return static_cast<int>(outcome.code);
 }
 
+/// Every path for a program that reads on; for a person at a terminal, who did not ask for more, the page to look at
+/// or the first result in the folder itself, and how many there are.
 void print_results(const std::vector<fs::path>& results) {
   clear_progress_line();
-  for (const fs::path& path : results) fmt::print("{}\n", path.string());
+  if (results.size() > 3 && isatty(STDOUT_FILENO) != 0 && context().verbosity != Verbosity::verbose) {
+    const auto depth = [](const fs::path& path) {
+      return std::pair(path.extension() != ".html", std::distance(path.begin(), path.end()));
+    };
+    fmt::print("{} ({} files in all; -v lists them)\n", std::ranges::min_element(results, {}, depth)->string(),
+               results.size());
+  } else {
+    for (const fs::path& path : results) fmt::print("{}\n", path.string());
+  }
   errno = 0;
   if (std::fflush(stdout) != 0)
     throw DataError({"stdout: cannot be written", reason_of(errno), "The results themselves are in the output folder"});

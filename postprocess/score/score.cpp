@@ -171,6 +171,21 @@ std::string to_json(const Score& score) {
   return json.dump(2) + "\n";
 }
 
+Score headline_of(const Score& score, const std::filesystem::path& rest) {
+  constexpr std::string_view keys[] = {"volume_released_m3",      "runout_m",   "h_over_l", "max_peak_speed_m_s",
+                                       "max_deposit_thickness_m", "deposit_csi"};
+  Score head;
+  head.title = score.title;
+  head.belief = score.belief;
+  head.sections.push_back({"First numbers", {}});
+  for (const std::string_view key : keys)
+    for (const auto& section : score.sections)
+      for (const auto& entry : section.entries)
+        if (entry.key == key) head.sections.front().entries.push_back(entry);
+  head.notes.push_back("All numbers, findings and definitions: " + rest.string());
+  return head;
+}
+
 std::string to_table(const Score& score) {
   std::size_t label_width = 0, value_width = 0;
   for (const auto& section : score.sections)

@@ -63,6 +63,10 @@ void warn_of_end(const Run& run);
 /// One flat object: key -> value; `not_scored` says why a value is absent; `findings` is an array of objects.
 std::string to_json(const Score& score);
 
+/// Of a score what a run is first judged by: what may be believed, and six numbers (released volume, run-out, H/L,
+/// largest speed, thickest deposit, overlap of the deposits). `rest`: the file that holds all.
+Score headline_of(const Score& score, const std::filesystem::path& rest);
+
 /// A score as an aligned table with the findings and the definitions below it.
 std::string to_table(const Score& score);
 

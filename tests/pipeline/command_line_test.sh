@@ -178,4 +178,28 @@ test_gpu_that_is_not_there_is_refused() {
   expect_no_file out domain.vdb preprocess.used.toml survey
 }
 
+# at_a_terminal LOG COMMAND...: what a person sees of it, without the lines of progress.
+at_a_terminal() {
+  local log=$1
+  shift
+  script -qec "${*@Q}" "$log.raw" >/dev/null </dev/null || fail "${*@Q}: $(<"$log.raw")"
+  tr '\r' '\n' <"$log.raw" | grep -vE '^$|^Script (started|done)|%  eta' >"$log" || fail "nothing is shown"
+}
+
+test_a_terminal_shows_few_lines_and_the_report_last() {
+  need_tool script
+  scene
+  local stage
+  for stage in preprocess solve postprocess; do
+    at_a_terminal shown "$bin/talus-$stage" recipe.toml --out out
+    (($(wc -l <shown) <= 25)) || fail "$stage shows $(wc -l <shown) lines"
+  done
+  grep -q 'deposit CSI' shown || fail "the overlap is not shown"
+  [[ $(tail -n 1 shown) == *out/report.html* ]] || fail "the last line is $(tail -n 1 shown)"
+  at_a_terminal shown "$bin/talus-postprocess" recipe.toml --out out -v
+  (($(grep -c '/out/' shown) >= 20)) || fail "-v does not list the files"
+  at_a_terminal shown "$bin/talus" run recipe.toml --out anew
+  [[ $(tail -n 1 shown) == *anew/report.html ]] || fail "the last line is $(tail -n 1 shown)"
+}
+
 run_test "$@"
