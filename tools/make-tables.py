@@ -213,8 +213,9 @@ def events():
                      f"{number(r['thickness_rmse_m'], 1, ' m')} | {number(r['runout_difference_m'], 0, ' m')} | "
                      f"{number(r['deposit_volume_ratio'], 2)} |")
     return [*lines, "", made(rows, "by `make scores`. Friction: of Ryggfonn what RAMMS assigns, of the others chosen"),
-            "with the reference in hand. Footprint and deposit: CSI, 1 is the same area. Run-out and volume of the "
-            "deposit:", "simulated less, and over, surveyed."]
+            "with the reference in hand; that of Frank is another model's run, and Cascade's source is 4 cells across.",
+            "Footprint and deposit: CSI of what is thicker than 0.1 m, 1 is the same area. Run-out and volume of the",
+            "deposit: simulated less, and over, surveyed."]
 
 
 def scenes():

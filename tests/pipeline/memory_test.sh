@@ -83,7 +83,8 @@ test_of_a_large_model_with_a_small_part_wanted_is_that_of_the_part() {
   gdal_create -q -of GTiff -ot Float32 -outsize 10000 10000 -bands 1 -a_ullr 500000 5060000 560000 5000000 \
     -a_srs EPSG:32611 -a_nodata -1 -co TILED=YES -co SPARSE_OK=TRUE thickness.tif
   gdal_rasterize -q -burn 5 release.geojson thickness.tif
-  recipe_on polygons 'base_dem = "large.tif"' '[preprocess.grid]' 'extent_m = [539000.0, 5029000.0, 541000.0, 5031000.0]'
+  recipe_on polygons 'base_dem = "large.tif"' '[preprocess.grid]' \
+    'extent_m = [539000.0, 5029000.0, 541000.0, 5031000.0]'
   sed 's/^polygons.*/thickness_raster = "thickness.tif"/; s/^thickness_m.*//; s/"polygons"/"raster"/' polygons.toml \
     >raster.toml
   local name peak
