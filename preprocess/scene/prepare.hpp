@@ -32,7 +32,7 @@ struct Prepared {
   std::optional<SlidingSurface> sliding_surface = {};  // where it was computed from an outline
   std::optional<Survey> survey = {};                   // where before and after are given
   std::optional<SurveyedSlide> slide = {};
-  DeclaredHeights heights = {};  // of the surface before
+  DeclaredHeights heights = {};    // of the surface before
   std::string volume_source = {};  // of the released volume, in words that go on "the volume is"
 };
 

@@ -12,9 +12,9 @@
 namespace talus::postprocess {
 namespace {
 
+using test::block;
 using test::small_grid;
 using test::small_run;
-using test::block;
 
 TEST(Classes, follow_the_deposits_thickness_unless_they_are_given) {
   EXPECT_EQ(class_limits({}, 80).at(1), 2);
