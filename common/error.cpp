@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/error.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
 namespace talus {
 namespace {
 
@@ -28,7 +34,32 @@ std::string to_string(const Fault& fault) {
   std::string text = fault.what;
   if (!fault.why.empty()) text += " (" + fault.why + ")";
   if (!fault.mend.empty()) text += ". " + fault.mend;
-  return text;
+  return with_short_numbers(text);
+}
+
+std::string with_short_numbers(const std::string& text) {
+  constexpr std::size_t most_digits = 18;
+  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '/'; };
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    if (!is_digit(text[i]) || (i > 0 && (is_word(text[i - 1]) || text[i - 1] == '.'))) {
+      result += text[i++];
+      continue;
+    }
+    std::size_t end = i;
+    while (end < text.size() &&
+           (is_digit(text[end]) || (text[end] == ',' && end + 1 < text.size() && is_digit(text[end + 1]))))
+      ++end;
+    std::string digits = text.substr(i, end - i);
+    std::erase(digits, ',');
+    if (end < text.size() && text[end] == '.')
+      for (++end; end < text.size() && is_digit(text[end]);) ++end;
+    const bool short_enough = digits.size() <= most_digits || (end < text.size() && is_word(text[end]));
+    result += short_enough ? text.substr(i, end - i) : fmt::format("{:.4g}", std::strtod(digits.c_str(), nullptr));
+    i = end;
+  }
+  return result;
 }
 
 Error::Error(ExitCode code, std::vector<Fault> faults)

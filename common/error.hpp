@@ -22,6 +22,9 @@ struct Fault {
 /// "what (why). mend"
 std::string to_string(const Fault& fault);
 
+/// The text with numbers of more than 18 digits before the point in short: 1e+300. What is part of a word stays.
+std::string with_short_numbers(const std::string& text);
+
 /// Base of the three kinds. Caught in run_stage() and nowhere else.
 class Error : public std::runtime_error {
  public:

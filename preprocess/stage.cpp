@@ -152,6 +152,7 @@ void run(StageContext& context, bool difference) {
   if (ensemble) base.emplace(EnsembleBase{options, scene, memory, {}, {}, {}, {}});
   auto prepared = prepare(resolved(options), std::move(scene), context.check_only ? Points::counted : Points::seeded);
   report(prepared);
+  refuse_points_at_edge(prepared.domain, options.first_dem());
   if (ensemble) look_at_ensemble(context, *ensemble, *base, prepared.domain.layer_height);
   if (context.check_only) return;
   stop_if_interrupted("writing the domain");

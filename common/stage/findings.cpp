@@ -79,7 +79,7 @@ void Findings::keep(const Finding& finding, bool logged) {
 }
 
 void add_finding(Finding finding) {
-  finding.message = as_utf8(with_shown_paths(finding.message));
+  finding.message = with_short_numbers(as_utf8(with_shown_paths(finding.message)));
   if (finding.stage.empty() && innermost != nullptr) finding.stage = innermost->stage_;
   if (innermost != nullptr && std::ranges::find(innermost->list_, finding) != innermost->list_.end()) return;
   Findings::keep(finding, true);

@@ -269,4 +269,20 @@ Prepared prepare(const Options& options, SceneRasters scene, Points points) {
   return prepared;
 }
 
+void refuse_points_at_edge(const Domain& domain, const std::filesystem::path& file) {
+  const MapGrid& grid = domain.grid;
+  std::vector<char> at_edge(grid.count());
+  for (std::size_t p = 0; p < domain.points.size(); ++p) {
+    const auto [column, row, layer] = nearest_cell(grid, domain.layer_height, domain.points, p);
+    const int i = std::clamp(column, 0, grid.columns - 1), j = std::clamp(row, 0, grid.rows - 1);
+    bool known = i == column && j == row && i > 0 && j > 0 && i < grid.columns - 1 && j < grid.rows - 1;
+    for (int r = j - 1; known && r <= j + 1; ++r)
+      for (int c = i - 1; c <= i + 1; ++c) known = known && !std::isnan(domain.terrain.at(c, r));
+    at_edge[grid.index(i, j)] = !known;
+  }
+  refuse_cells(grid, at_edge, file,
+               {"cells of release at the edge of the known ground", "a point needs known ground one cell around it",
+                "Give a larger elevation model or extent_m, or cut the release"});
+}
+
 }  // namespace talus::preprocess

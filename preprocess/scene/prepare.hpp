@@ -54,4 +54,7 @@ Prepared prepare(const Options& options, Points points);
 /// for what acts here: thickness_factor, erodible layers, bed, layers and points of the grid, obstacles, places.
 Prepared prepare(const Options& options, SceneRasters scene, Points points);
 
+/// Throws DataError where a point has no known ground one cell around it, which the solver needs. `file`: the model.
+void refuse_points_at_edge(const Domain& domain, const std::filesystem::path& file);
+
 }  // namespace talus::preprocess

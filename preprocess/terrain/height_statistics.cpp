@@ -19,6 +19,8 @@ constexpr std::size_t least_cells = 400;  // fewer have no statistics: 20 x 20
 constexpr double hardly_matters = 0.1;    // [m] below what surveys tell apart
 constexpr double noise_like = 0.8;
 constexpr double level_share = 0.05, lower_share = 0.1;
+constexpr std::size_t least_line = 40;
+constexpr double same_sign = 0.9, beyond_bends = 2;
 
 std::vector<double> valid_heights(const Raster& heights) {
   std::vector<double> valid;
@@ -51,6 +53,37 @@ void each_triple(const Raster& heights, F&& f) {
     if (c > 0 && c + 1 < columns) call(heights.at(c - 1, r), heights.at(c, r), heights.at(c + 1, r));
     if (r > 0 && r + 1 < rows) call(heights.at(c, r - 1), heights.at(c, r), heights.at(c, r + 1));
   });
+}
+
+/// The jump over the line between cells `at` and `at` + 1, where the line is one of jumps; 0 elsewhere. `along` cells
+/// lie along it; height(cell along it, cell across).
+template <class Height>
+double jump_over(int at, int along, const Height& height) {
+  std::vector<double> jumps, bends;
+  for (int k = 0; k < along; ++k) {
+    const double before = height(k, at) - height(k, at - 1), here = height(k, at + 1) - height(k, at),
+                 after = height(k, at + 2) - height(k, at + 1);
+    if (std::isnan(before + here + after)) continue;
+    jumps.push_back(here - (before + after) / 2);
+    bends.push_back(after - before);
+  }
+  if (jumps.size() < least_line) return 0;
+  const double jump = median(jumps);
+  const auto alike = std::ranges::count_if(jumps, [&](double one) { return one * jump > 0; });
+  const bool straight = std::abs(jump) > std::max(hardly_matters, beyond_bends * std::abs(median(bends))) &&
+                        static_cast<double>(alike) >= same_sign * static_cast<double>(jumps.size());
+  return straight ? jump : 0;
+}
+
+void warn_of_straight_jumps(const Raster& heights, const std::filesystem::path& file) {
+  const StraightJumps found = straight_jumps(heights);
+  if (found.rows + found.columns == 0) return;
+  warn("straight-jumps",
+       fmt::format("{}: heights jump by {:.2g} m (median) over {} lines along rows and {} along columns, from rim to "
+                   "rim, the first at {} {:.1f}: stripes of a scanner, or tiles of a mosaic that do not fit. A dam, a "
+                   "wall or terraces as straight as that are ground. Level the parts, or take another model",
+                   file.string(), found.size, found.rows, found.columns, found.rows > 0 ? "y" : "x", found.at),
+       {{"jump", found.size, "m"}, {"lines", static_cast<double>(found.rows + found.columns), "1"}});
 }
 
 void warn_of_steps(const Raster& heights, const std::filesystem::path& file) {
@@ -152,6 +185,24 @@ LevelPiece most_common_height(const Raster& heights) {
   return piece;
 }
 
+StraightJumps straight_jumps(const Raster& heights) {
+  const MapGrid& grid = heights.grid;
+  StraightJumps found;
+  std::vector<double> sizes;
+  for (int row = 1; row + 2 < grid.rows; ++row)
+    if (const double jump = jump_over(row, grid.columns, [&](int c, int r) { return heights.at(c, r); }); jump != 0) {
+      if (found.rows++ == 0) found.at = grid.y(row) + grid.cell / 2;
+      sizes.push_back(std::abs(jump));
+    }
+  for (int column = 1; column + 2 < grid.columns; ++column)
+    if (const double jump = jump_over(column, grid.rows, [&](int r, int c) { return heights.at(c, r); }); jump != 0) {
+      if (found.columns++ == 0 && found.rows == 0) found.at = grid.x(column) + grid.cell / 2;
+      sizes.push_back(std::abs(jump));
+    }
+  if (!sizes.empty()) found.size = median(sizes);
+  return found;
+}
+
 bool is_level(const std::vector<double>& before, const std::vector<double>& after, double detection) {
   constexpr double least = 0.1, detections = 2;
   const double resolved = std::max(least, detections * detection);
@@ -164,6 +215,7 @@ void warn_of_statistics(const Raster& heights, const std::filesystem::path& file
   if (valid_heights(heights).size() < least_cells) return;
   warn_of_noise(heights, file);
   warn_of_level_piece(heights, file);
+  warn_of_straight_jumps(heights, file);
 }
 
 }  // namespace talus::preprocess

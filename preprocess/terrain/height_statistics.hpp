@@ -31,6 +31,19 @@ struct LevelPiece {
 };
 LevelPiece most_common_height(const Raster& heights);
 
+/// Lines between two rows or columns over which heights jump from rim to rim.
+struct StraightJumps {
+  std::size_t rows = 0, columns = 0;  // how many lie along rows, and along columns
+  double size = 0;                    // the median jump of those [m]
+  double at = 0;                      // northing or easting of the first [m]
+};
+
+/// Over a line, a jump is the difference of a pair less the mean of the differences before and after it. The line is
+/// one where the median jump is above 0.1 m and twice the median change of slope over it (a bend of the ground alone
+/// makes a half), and 90 % of the jumps, 40 at least, have its sign. Real ground at hand has at most 84 % (seven models
+/// in cells of 5 to 190 m, 7,000 lines).
+StraightJumps straight_jumps(const Raster& heights);
+
 /// Whether a piece of ground is level in both surveys, as water is, to what they resolve: the range of 90 % of its
 /// heights before, and that of the lower half after (where it fell, shores lie bare), is at most two levels of
 /// detection (3.29 standard errors of one of two equal surveys are 1.2, and there are few cells), or 0.1 m: waves, and
@@ -40,7 +53,7 @@ bool is_level(const std::vector<double>& before, const std::vector<double>& afte
 /// Warnings of heights [m] that may be no heights of ground, each with the causes that it cannot tell apart:
 /// "stepped-heights" (steps of 0.1 m and more), "noise-like-heights" (a ratio above 0.8, which is ground with H < 0.87
 /// without a slope), "level-ground" (a twentieth of the cells hold one value exactly, and a tenth of what lies around
-/// them is lower: no water lies so).
+/// them is lower: no water lies so), "straight-jumps".
 void warn_of_statistics(const Raster& heights, const std::filesystem::path& file);
 
 }  // namespace talus::preprocess

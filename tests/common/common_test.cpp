@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
+#include <fmt/format.h>
+
 #include "common/text_encoding.hpp"
 #include "common/whole_text.hpp"
 #include "tests/common/scratch.hpp"
@@ -20,6 +22,16 @@ TEST(Error, text_has_what_why_and_mend_and_kinds_their_exit_codes_and_all_faults
   const RecipeError two({Fault{"first", "", ""}, Fault{"second", "why", ""}});
   EXPECT_EQ(two.faults().size(), 2u);
   EXPECT_STREQ(two.what(), "first\nsecond (why)");
+}
+
+TEST(Error, numbers_of_many_digits_are_short_and_names_stay) {
+  EXPECT_EQ(with_short_numbers(fmt::format("x {:.1f} m, {:.0f} m3", 1e300, -2e100)), "x 1e+300 m, -2e+100 m3");
+  EXPECT_EQ(with_short_numbers("1,000,000,000,000,000,000,000 cells, 12,345 m"), "1e+21 cells, 12,345 m");
+  for (const std::string same :
+       {"sha256 1234567890123456789012345a", "/tmp/12345678901234567890/a", "a_12345678901234567890.tif",
+        "0.1234567890123456789", "123456789012345678 m", "1e+300", "400505.0, 5200205.0", "2026-11-28 12:00", ""})
+    EXPECT_EQ(with_short_numbers(same), same);
+  EXPECT_EQ(to_string({fmt::format("{:f} m", 1e30), "", ""}), "1e+30 m");
 }
 
 TEST(Error, of_many_faults_says_the_first_and_counts_the_rest) {

@@ -158,7 +158,7 @@ test_preprocess_hears_the_signal() {
     gdal_translate -q -outsize 2000 2000 -r bilinear -a_srs EPSG:32611 $name.asc $name.tif
   done
   sed -i 's/\.asc"/.tif"/' recipe.toml
-  hears preprocess 0.3 1 2 4 8
+  hears preprocess 0.3 1 3 6
 }
 
 test_postprocess_hears_the_signal() {
@@ -168,7 +168,7 @@ test_postprocess_hears_the_signal() {
   sed -i 's/^thickness = .*/thickness = "survey.tif"\nsigma_m = 0.28/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve
-  hears postprocess 0.3 1 2 4 8 16
+  hears postprocess 0.3 1 3 9
 }
 
 # Gravity loading has nothing to save: it stops at once.

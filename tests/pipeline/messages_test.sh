@@ -137,4 +137,49 @@ test_small_scenes_have_digits() {
   expect_words "release-1: 6.4e-06 m3" "area 0.0016 m2 on the map" "thickness at most 0.004 m vertical"
 }
 
+# release_of CORNER THICKNESS LINE: a polygon with this corner and attribute, and a line for the release.
+release_of() {
+  cat >release.geojson <<JSON
+{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"thickness": $2}, "geometry":
+  {"type": "Polygon", "coordinates": [[[500030, 5000080], [500070, 5000080], [$1], [500030, 5000120],
+  [500030, 5000080]]]}}]}
+JSON
+  printf '%s\n' '[scene]' 'name = "extreme"' '[preprocess]' 'base_dem = "before.asc"' '[[preprocess.release]]' \
+    'polygons = "release.geojson"' "$3" >recipe.toml
+}
+
+test_extreme_numbers_are_refused_in_few_digits() {
+  scene
+  local corner=500070,5000120 number
+  for number in 1e30 1e300 1.7e308; do
+    for line in "thickness_m = $number" "volume_m3 = $number" \
+      $'thickness_m = 4\n[preprocess.grid]\nspacing_m = 1e-300'; do
+      release_of $corner 4 "$line"
+      expect_exit 3 preprocess
+      [[ ! $(<stderr) =~ [0-9]{19} ]] || fail "$line: many digits: $(<stderr)"
+    done
+    release_of $corner $number ''
+    expect_exit 3 preprocess
+    [[ ! $(<stderr) =~ [0-9]{19} ]] || fail "thickness $number: many digits: $(<stderr)"
+    release_of $number,5000120 4 'thickness_m = 4'
+    expect_exit 3 preprocess
+    expect_words 'release.geojson: polygon reaches x '
+    [[ ! $(<stderr) =~ [0-9]{19} ]] || fail "corner $number: many digits: $(<stderr)"
+  done
+}
+
+test_a_release_at_the_edge_is_refused_before_the_solver_runs() {
+  scene
+  release_of 500070,5000120 4 'thickness_m = 4'
+  expect_exit 0 preprocess
+  sed -i 's/500030/500000/g' release.geojson
+  expect_exit 3 preprocess
+  expect_words 'cells of release at the edge of the known ground'
+  sed -i 's/500000/500010/g' release.geojson
+  expect_exit 0 preprocess
+  expect_exit 0 solve
+  sed -i '/^[ 0-9.-]*$/s/^[^ ]* [^ ]* [^ ]* /-9999 -9999 -9999 /' before.asc
+  expect_exit 3 preprocess
+}
+
 run_test "$@"

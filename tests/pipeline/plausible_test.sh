@@ -94,7 +94,8 @@ test_shifted_part_of_a_survey_is_refused_by_name() {
     expect_words 'm lower than what is around'
     expect_no_file new
   done
-  sed -i 's/^\[preprocess\]/&\naccept = ["shifted-part", "doubtful-source"]/' recipe.toml
+  sed -i 's/^\[preprocess\]/&\naccept = ["shifted-part"]/' recipe.toml
+  sed -i 's/^\[preprocess.grid\]/[preprocess.source]\nseed_m = [500045, 5000105]\n\n&/' recipe.toml
   expect_exit 0 preprocess
   expect_words 'accepted, "shifted-part"'
 }

@@ -87,7 +87,10 @@ test_pipelines_of_the_repository() {
     rm -rf out
     "$bin/talus-preprocess" "$recipe" --out out --check >stdout 2>stderr || continue   # its data is not here
     expect_exit 0 "$bin/talus-preprocess" "$recipe" --out out
-    used_of preprocess
+    cp out/preprocess.used.toml used.toml
+    expect_exit 0 "$bin/talus-preprocess" used.toml --out out --check
+    expect_exit 0 "$bin/talus-preprocess" used.toml --out out --if-outdated
+    expect_words "is up to date"
     looked=$((looked + 1))
   done
   [[ $looked -ge 3 ]] || fail "only $looked pipelines run from the repository alone"

@@ -150,8 +150,8 @@ TEST(Statistics, spread_leaves_out_draws_without_a_value_and_half_of_the_volume_
   EXPECT_DOUBLE_EQ(spread.high, 2.9);
   EXPECT_EQ(spread_of({5}).deviation, 0);
   EXPECT_TRUE(std::isnan(spread_of({}).mean));
-  const MapGrid grid{10, 10, 0, 0, 20, ""};
-  Raster rim{grid, std::vector<double>(grid.count(), 1.0)};  // half of the columns, a tenth of the volume
+  const MapGrid ten{10, 10, 0, 0, 20, ""};
+  Raster rim{ten, std::vector<double>(ten.count(), 1.0)};  // half of the columns, a tenth of the volume
   for (std::size_t n = 0; n < rim.values.size() / 2; ++n) rim.values[n] = 9;
   EXPECT_EQ(median_thickness(rim), 9.0);
   for (double& t : rim.values) t = 0;

@@ -101,5 +101,28 @@ TEST(HeightStatistics, doubt_a_level_piece_that_is_no_water) {
   EXPECT_EQ(piece.first, 0U);
 }
 
+TEST(HeightStatistics, doubt_jumps_over_straight_lines) {
+  for (const double jump : {3.0, -5.0}) {
+    const Raster stripes =
+        heights_of([&](double x, double y) { return valley(x, y) + (static_cast<int>(y / 50) % 2 == 0 ? jump : 0); });
+    EXPECT_EQ(doubts(stripes), Names{"straight-jumps"}) << jump;
+    const StraightJumps found = straight_jumps(stripes);
+    EXPECT_EQ(found.rows, 7U);
+    EXPECT_EQ(found.columns, 0U);
+    EXPECT_NEAR(found.size, std::abs(jump), 0.2);
+    EXPECT_EQ(found.at, 5e6 + 50);
+    EXPECT_EQ(straight_jumps(heights_of([&](double x, double y) {
+                return valley(x, y) + (x >= 250 ? jump : 0) + (y >= 300 ? 2 * jump : 0);
+              })).columns,
+              1U)
+        << "four tiles";
+  }
+  for (const auto& ground : std::vector<std::function<double(double, double)>>{
+           [](double x, double y) { return valley(x, y) + (x + 0.7 * y > 350 ? 30 : 0); },  // an oblique cliff
+           [](double x, double y) { return valley(x, y) + (x > 120 && x < 200 && y > 200 ? 8 : 0); },  // a dam
+           [](double x, double) { return x < 200 ? 0.2 * x : 40 + 0.9 * (x - 200); }})  // a foot of a slope
+    EXPECT_EQ(straight_jumps(heights_of(ground)).rows + straight_jumps(heights_of(ground)).columns, 0U);
+}
+
 }  // namespace
 }  // namespace talus::preprocess
