@@ -9,10 +9,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND _warnings -Wno-array-bounds)   # GCC 13 sees the copy of an empty std::vector reach beyond its end
 endif()
-if(TALUS_BATCHES)   # sources see what others of their folder declare, and are included files
-  list(APPEND _warnings -Wshadow=local -Wno-subobject-linkage)
-else()
-  list(APPEND _warnings -Wshadow)
+# The same of a local name in every build: in a batch (cmake/batches.cmake) sources see what others of their folder
+# declare, which -Wshadow alone would count; whether a compiler cache is there must not decide what compiles.
+list(APPEND _warnings -Wshadow=local)
+if(TALUS_BATCHES)   # sources are included files there
+  list(APPEND _warnings -Wno-subobject-linkage)
 endif()
 if(TALUS_WERROR)
   list(APPEND _warnings -Werror)

@@ -39,12 +39,12 @@ TEST_F(grow, a_source_by_its_outline) {
   for (const double by : {0.0, 12.0, -12.0}) {
     Scene scene;
     scene.options.source.polygon = rectangle(scene);
-    Raster after = scene.before;
-    for (double& z : after.values) z -= 4;  // lowered everywhere: the outline alone says what counts
-    scene.rewrite_after(after);
+    Raster lowered = scene.before;
+    for (double& z : lowered.values) z -= 4;  // lowered everywhere: the outline alone says what counts
+    scene.rewrite_after(lowered);
     scene.options.source.grow = by;
     EXPECT_NEAR(scene.prepare().total.volume / (4 * area_grown(by)), 1, 1e-3) << by;
-    scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", after);
+    scene.options.sliding_surface = test::write(scene.scratch, "surface.tif", lowered);
     scene.options.after_dem.clear();
     EXPECT_NEAR(scene.prepare().total.volume / (4 * area_grown(by)), 1, 1e-3) << by;
   }

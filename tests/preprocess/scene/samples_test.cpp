@@ -20,11 +20,11 @@ namespace {
 
 using test::volume_of_points;
 
-const std::filesystem::path folder = std::filesystem::path(TALUS_SOURCE_DIR) / "data_samples";
+const std::filesystem::path samples = std::filesystem::path(TALUS_SOURCE_DIR) / "data_samples";
 
 void expect_committed(const std::string& kind, const samples::Sample& sample) {
   for (const auto& [stem, raster] : sample.rasters) {
-    const Raster file = read_raster(folder / kind / (stem + ".tif"));
+    const Raster file = read_raster(samples / kind / (stem + ".tif"));
     EXPECT_EQ(crs_name(file.grid.crs_wkt), "EPSG:32633");
     ASSERT_EQ(file.values.size(), raster.values.size());
     // Rounded to cm and kept in single precision; another machine's sine may round the other way.
@@ -35,7 +35,7 @@ void expect_committed(const std::string& kind, const samples::Sample& sample) {
     }
   }
   for (const auto& [stem, features] : sample.outlines) {
-    const auto polygons = read_polygons(folder / kind / (stem + ".geojson"), "");
+    const auto polygons = read_polygons(samples / kind / (stem + ".geojson"), "");
     ASSERT_EQ(polygons.size(), features.size());
     for (std::size_t p = 0; p < polygons.size(); ++p) {
       EXPECT_EQ(polygons[p].name, features[p].name);
@@ -66,7 +66,7 @@ TEST(samples, are_what_the_program_makes) {
 }
 
 TEST(samples, are_small) {
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(samples)) {
     if (!entry.is_regular_file() || entry.path().extension() != ".tif") continue;
     EXPECT_LE(entry.file_size(), 200'000u) << entry.path();
   }
@@ -99,7 +99,7 @@ TEST(samples, hard_terrains_lie_on_the_map_as_asked) {
 }
 
 Options valley_options() {
-  return test::two_models(folder / "valley" / "before_dem.tif", folder / "valley" / "after_dem.tif");
+  return test::two_models(samples / "valley" / "before_dem.tif", samples / "valley" / "after_dem.tif");
 }
 
 TEST(samples, valley_is_a_scene_of_a_few_thousand_points) {
@@ -119,7 +119,7 @@ TEST(samples, valley_deposit_has_the_volume_of_its_scar_and_lies_in_its_outline)
     (change < 0 ? lowered : raised) += std::abs(change);
   }
   EXPECT_NEAR(raised / lowered, 1, 0.005);  // formulas sampled at 10 m
-  auto outline = read_polygons(folder / "valley" / "surveyed_outline.geojson", before.grid.crs_wkt);
+  auto outline = read_polygons(samples / "valley" / "surveyed_outline.geojson", before.grid.crs_wkt);
   check_polygons(outline, "surveyed_outline.geojson");
   const auto covered = coverage(before.grid, outline[0], "surveyed_outline.geojson");
   double inside = 0, all = 0;
@@ -134,20 +134,20 @@ TEST(samples, valley_deposit_has_the_volume_of_its_scar_and_lies_in_its_outline)
 TEST(samples, valley_polygon_and_region_agree) {
   Options options = valley_options();
   const double by_region = prepare(options, Points::counted).total.volume;
-  options.source.polygon = folder / "valley" / "source.geojson";
+  options.source.polygon = samples / "valley" / "source.geojson";
   // The outline cuts the cells on it; the region takes them whole.
   EXPECT_NEAR(prepare(options, Points::counted).total.volume / by_region, 1, 0.02);
 }
 
 TEST(samples, releases_on_plane_and_chute_have_their_volume) {
-  const auto plane = folder / "inclined-plane";
+  const auto plane = samples / "inclined-plane";
   Options options = test::released_on(plane / "dem.tif", plane / "release_thickness.tif");
   EXPECT_NEAR(prepare(options, Points::seeded).total.volume, 100 * 80 * 8, 1e-6);
   options.release[0].thickness_raster.clear();
   options.release[0].polygons = plane / "release.geojson";
   EXPECT_NEAR(prepare(options, Points::seeded).total.volume, 100 * 80 * 8, 1e-6);
-  options.base_dem = folder / "parabolic-chute" / "dem.tif";
-  options.release[0].polygons = folder / "parabolic-chute" / "release.geojson";
+  options.base_dem = samples / "parabolic-chute" / "dem.tif";
+  options.release[0].polygons = samples / "parabolic-chute" / "release.geojson";
   EXPECT_NEAR(prepare(options, Points::seeded).total.volume, 2 * 53 * 76 + 3 * 47 * 52, 1e-6);
 }
 
@@ -159,7 +159,7 @@ TEST(samples, releases_on_hard_terrains_are_as_thick_as_they_say) {
   for (const Release& release : {Release{"rough-slope", 4295, 1}, Release{"bent-gully", 7763, 5},
                                  Release{"cliff-bench", 16500, 5}, Release{"thinning-slide", 53462, 18}}) {
     const Prepared prepared =
-        prepare(test::released_on(folder / release.name / "dem.tif", folder / release.name / "release_thickness.tif"),
+        prepare(test::released_on(samples / release.name / "dem.tif", samples / release.name / "release_thickness.tif"),
                 Points::counted);
     EXPECT_NEAR(prepared.total.volume, release.volume, 0.5) << release.name;
     EXPECT_LE(prepared.total.max_vertical, release.most) << release.name;
