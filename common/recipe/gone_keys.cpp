@@ -110,6 +110,8 @@ constexpr GoneKeys gone_keys[] = {
     {"solve.base.hysteresis_power", "Leave it out; it is 1 (Edwards et al. 2017)"},
     {"solve.base.karman_constant", "Leave it out; it is 0.43 in all sets of com1DFA"},
     {"solve.base.roughness_m", "Leave it out; it is 0.05 m in all sets of com1DFA"},
+    {"solve.base.separation separation_depth_m",
+     "Leave it out; a flow leaves its bed where it would fly higher than half its depth"},
     {"solve.base.slowest_froude", "Leave it out; it is flow_rule_slope"},
     {"solve.base.table_speed_m_s table_coefficient", "Give table = [[speed, coefficient], ...]"},
     {"solve.base.weakening_number", "Leave it out; it is 0.222 in all sets of com1DFA"},

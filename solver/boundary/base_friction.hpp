@@ -8,15 +8,6 @@
 
 namespace talus {
 
-/// What of the mass may leave its bed: all of it, none of it, or columns deeper than a threshold.
-enum class Separation { free, none, thin };
-
-/// The separation that a recipe chooses.
-struct SeparationSettings {
-  Separation kind = Separation::free;
-  double depth = 0;  ///< columns shallower than this along the normal of the bed are held, with `thin` [m]
-};
-
 /// The numbers of the bed at one place: those of the chosen law, in its order, and what acts with every law that rubs.
 template <class Real, class Laws = FrictionLaws>
 struct Bed {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the bed does to whole columns in explicit steps, beside what its nodes feel: friction of laws that ask for the
-// column, tractions, and the hold on columns that would leave it.
+// column, tractions, and the hold on columns that would leave it for a low hop.
 #pragma once
 
 #include "solver/boundary/bed_hold.hpp"
@@ -24,7 +24,7 @@ class ColumnContact {
                 const GridShape& grid)
       : device_(device),
         traction_(device, bed, grid.columns, grid.rows),
-        hold_(device, settings.separation, density, grid.columns, grid.rows),
+        density_(static_cast<Real>(density)),
         pressed_(device) {
     if (settings.energy_budget)
       pressed_.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
@@ -57,23 +57,19 @@ class ColumnContact {
                                        .step = at.step});
   }
 
-  /// The method holds columns on the ground that would leave it (T12c). Which ones are shallow is settled as a step
-  /// begins, by the `first` of the updates that it makes.
+  /// The method holds columns on the ground that would leave it for a low hop (T12c), where the grid follows the
+  /// ground. The `first` of the updates that a step makes tells tractions of it.
   void hold(const StepNodes<Real>& at, const Walls<Real>& walls, bool first) {
-    if (!hold_.acts()) return;
-    using Nodes = PackedNodes<Real>;
+    if (at.grid.mapping != Mapping::terrain_following) return;
     const ProfilePhase<Device> phase(device_, "grid");
-    if (first && hold_.measures())
-      for_each(device_, at.count(),
-               MeasureLying<Real, Nodes>{at.grid, at.active, at.step.clock, at.nodes, hold_.lying()});
     for_each(device_, at.count(),
-             HoldColumns<Real, Nodes>{.grid = at.grid,
-                                      .active = at.active,
-                                      .clock = at.step.clock,
-                                      .nodes = at.nodes,
-                                      .walls = walls,
-                                      .held = hold_.columns(),
-                                      .rise = first ? traction_.slowed().rise : nullptr});
+             HoldColumns<Real, PackedNodes<Real>>{.grid = at.grid,
+                                                  .active = at.active,
+                                                  .nodes = at.nodes,
+                                                  .step = at.step,
+                                                  .walls = walls,
+                                                  .density = density_,
+                                                  .rise = first ? traction_.slowed().rise : nullptr});
   }
 
   /// The method lets drag and cohesion of the bed slow what lies on it (T13a).
@@ -83,14 +79,13 @@ class ColumnContact {
 
   void list_memory(MemoryShares& shares) const {
     if (traction_.bytes() > 0) shares.emplace_back("bed's tractions", traction_.bytes());
-    if (const std::size_t held = hold_.bytes() + pressed_.bytes(); held > 0)
-      shares.emplace_back("contact of columns", held);
+    if (pressed_.bytes() > 0) shares.emplace_back("contact of columns", pressed_.bytes());
   }
 
  private:
   Device device_;
   ColumnTraction<Real, Device> traction_;
-  BedHold<Real, Device> hold_;
+  Real density_;                  ///< of the mass [kg/m3]
   Buffer<Real, Device> pressed_;  ///< impulse of the bed on every column [N s]; with a budget
 };
 

@@ -42,7 +42,6 @@ struct IntegratorSettings : SchemeOptions, GravityOptions, OutputOptions {
   double decay_time = 0;     ///< over which velocity finer than the grid decays (T8) [s]; 0: at every step
   MaterialSettings materials = {};
   BaseFriction<double> bed = {};  ///< where the scene has no numbers of its own for a column
-  SeparationSettings separation = {};
   std::vector<PlaneWall> walls = {};
   std::vector<LoadOptions> loads = {};
 };

@@ -51,16 +51,6 @@ void BaseOptions::describe(recipe::Visitor& v) {
            "traction besides friction, wherever the mass touches its bed");
   v.number("pore_pressure_ratio", pore_pressure_ratio, recipe::Range{0, 1},
            "share of the normal stress on the bed that water carries (saturated ground); friction acts on the rest");
-  recipe::choice(v, "separation", separation,
-                 {{"free", Separation::free}, {"none", Separation::none}, {"thin", Separation::thin}},
-                 "what leaves the bed where that falls away below it: what moves so (free), nothing that lies on it "
-                 "(none), what is deeper than separation_depth_m (thin)");
-  v.number("separation_depth_m", separation_depth, recipe::not_negative,
-           "separation = \"thin\": depth along the normal of the bed below which columns are held; 0: spacing of the "
-           "grid");
-  v.needs(separation == Separation::thin || !(separation_depth > 0),
-          {"[solve.base] separation_depth_m with separation = \"" + separation_name() + "\"",
-           "it is the depth up to which \"thin\" holds columns", "Leave it out, or take separation = \"thin\""});
 }
 
 std::array<GivenForm, bed_forms.size()> BaseOptions::forms() {
@@ -132,10 +122,6 @@ std::string BaseOptions::friction_key() const {
   return visit_law(law, [](auto own) { return std::string(own.friction_key); });
 }
 
-std::string BaseOptions::separation_name() const {
-  return separation == Separation::free ? "free" : separation == Separation::none ? "none" : "thin";
-}
-
 std::string BaseOptions::words() const {
   std::string text = visit_law(law, [&](auto own) {
     std::string of_law = own.words(*this);
@@ -145,10 +131,6 @@ std::string BaseOptions::words() const {
       of_law += ", water carries " + six_digits(pore_pressure_ratio) + " of the normal stress";
     return of_law;
   });
-  if (separation == Separation::none) text += ", never left by what lies on it";
-  if (separation == Separation::thin)
-    text += ", left only by what is deeper than " +
-            (separation_depth > 0 ? six_digits(separation_depth) + " m" : std::string("the spacing of the grid"));
   return text;
 }
 

@@ -30,8 +30,6 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   FrictionLaw law = FrictionLaw::coulomb;
   double cohesion = 0;             ///< [Pa]
   double pore_pressure_ratio = 0;  ///< water's part of the normal stress [-]
-  Separation separation = Separation::free;
-  double separation_depth = 0;  ///< columns shallower than this are held, with `thin`; 0: the grid's spacing [m]
 
   std::vector<std::string> given_as = {};  ///< the forms (BedForm) by whose keys the recipe gave numbers, as settled
   std::string given_twice = {};            ///< a form beside its number; empty: none is
@@ -52,8 +50,6 @@ struct BaseOptions : OptionsOfLaws<FrictionLaws> {
   std::string law_name() const;
   /// The key that alone decides the friction of the chosen law; empty where several do.
   std::string friction_key() const;
-  /// The chosen separation as recipes write it.
-  std::string separation_name() const;
   /// The bed in a line, for plan and log.
   std::string words() const;
   /// The law in a sentence of the report, "at its bed acts ...".

@@ -36,9 +36,6 @@ double longest_by_columns(const SolveOptions& o) {
 
 Hindrance beyond_rest(const SolveOptions& o) {
   if (Hindrance law = law_beyond_newton(o)) return law;
-  if (o.base.separation != Separation::free)
-    return {fmt::format("[solve.base] separation = \"{}\"", o.base.separation_name()),
-            "Newton's iterations free a base node whose reaction would pull"};
   if (o.deterministic) return {"[solve] deterministic = true", "sums of implicit steps are made in any order on a GPU"};
   if (o.energy_budget) return {"[solve] energy_budget = true", "losses are counted in steps of a flow alone"};
   return {};

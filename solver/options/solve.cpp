@@ -64,20 +64,6 @@ Fault beyond_search(const SolveOptions& o) {
 /// The longest stable explicit step over the CFL step (T11), for points that have a cell to themselves.
 constexpr double most_explicit_cfl = 0.8;
 
-/// Declares what holding base nodes on the ground needs.
-void need_separation(recipe::Visitor& v, const SolveOptions& o) {
-  const bool is_free = o.base.separation == Separation::free;
-  const std::string key = "[solve.base] separation = \"" + o.base.separation_name() + "\" with ";
-  v.needs(is_free || abilities_of(o.asked_integrator()).obey_cfl,
-          {key + "integrator = \"newmark\", \"quasi-static\" or preset = \"reference\"",
-           "Newton's iterations free a base node whose reaction would pull",
-           "Take integrator = \"explicit\", or separation = \"free\""});
-  v.needs(
-      is_free || o.mapping == Mapping::terrain_following,
-      {key + "mapping = \"cartesian\"", "its nodes lie up to a layer beside the ground, and would hold what passes by",
-       "Take mapping = \"terrain-following\", or separation = \"free\""});
-}
-
 /// Declares what column-implicit steps need, and what needs them.
 void need_columns(recipe::Visitor& v, const SolveOptions& o) {
   const bool by_columns = abilities_of(o.asked_integrator()).solve_columns;
@@ -142,7 +128,6 @@ void SolveOptions::describe(recipe::Visitor& v) {
   MassOptions::describe(v);
   recipe::table(v, "base", base, "the bed under it");
   base.settle(gravity_size() > 0 ? gravity_size() : 1);
-  need_separation(v, *this);
   need_columns(v, *this);
   v.needs(!accuracy || !cfl,
           {"[solve] cfl beside accuracy", "it follows from accuracy", "Leave it out, or leave accuracy out"});

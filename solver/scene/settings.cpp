@@ -59,8 +59,6 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
                  .in_single = make_materials<float>(o, grid.spacing, grid.layer_height),
                  .densities_differ = o.densities_differ()};
   s.bed = make_base_friction<double>(o);
-  s.separation = {.kind = o.base.separation,
-                  .depth = o.base.separation_depth > 0 ? o.base.separation_depth : grid.spacing};
   std::transform(o.walls.begin(), o.walls.end(), std::back_inserter(s.walls), make_wall);
   s.loads = o.loads;
   return s;
@@ -92,7 +90,6 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.common.needs.plastic_volume = s.common.needs.softening = s.common.needs.spreads = false;
   s.common.bed = {};
   s.common.bed.law = FrictionLaw::stick;
-  s.common.separation = {};
   for (PlaneWall& wall : s.common.walls) wall.to = 2;
   return s;
 }

@@ -79,7 +79,6 @@ SolverSettings static_settings(const SolveOptions& options, const Scene& scene, 
   s.integrator = Integrator::quasi_static;
   s.common.gravity_ramp = 1;
   s.common.bed = weakened(s.common.bed, factor);
-  s.common.separation = {};
   s.common.damping = 0;
   for (PlaneWall& wall : s.common.walls) wall.to = 1e30;
   std::erase_if(s.common.loads, [](const LoadOptions& load) { return load.from > 0; });

@@ -269,7 +269,6 @@ const std::vector<Asked> everything_asked{
     {"voellmy", "", {{"solve.base.law", "voellmy"}}},
     {"weakening", "", {{"solve.base.law", "velocity-weakening"}}},
     {"pouliquen", "", {{"solve.base.law", "pouliquen"}}},
-    {"no_flight", "", {{"solve.base.separation", "none"}}},
     {"elastic", "", {{"solve.material.model", "neo-hookean"}}},
     {"grains", "", {{"solve.material.model", "mu-of-i"}}},
     {"mud", "", {{"solve.material.model", "herschel-bulkley"}}},

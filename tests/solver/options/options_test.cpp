@@ -108,41 +108,6 @@ TEST(SolveOptions, obstacles_need_a_solver_without_assembly) {
             "is not in the assembled matrix). Take linear_solver = \"pcg\"");
 }
 
-TEST(SolveOptions, holding_the_mass_on_its_bed_needs_explicit_steps_on_a_grid_that_follows_it) {
-  for (const std::string steps :
-       {"integrator = \"newmark\"", "integrator = \"quasi-static\"", "preset = \"reference\""}) {
-    EXPECT_EQ(faults("[solve]\n" + steps + "\n[solve.base]\nseparation = \"none\""),
-              "[solve.base] separation = \"none\" with integrator = \"newmark\", \"quasi-static\" or preset = "
-              "\"reference\" (Newton's iterations free a base node whose reaction would pull). Take integrator = "
-              "\"explicit\", or separation = \"free\"");
-  }
-  EXPECT_EQ(
-      faults("[solve]\nmapping = \"cartesian\"\n[solve.base]\nseparation = \"thin\""),
-      "[solve.base] separation = \"thin\" with mapping = \"cartesian\" (its nodes lie up to a layer beside the ground, "
-      "and would hold what passes by). Take mapping = \"terrain-following\", or separation = \"free\"");
-  EXPECT_EQ(faults("[solve]\nmapping = \"cartesian\"\nintegrator = \"newmark\"\n[solve.base]\nseparation = \"free\""),
-            "");
-  EXPECT_EQ(faults("[solve.base]\nseparation = \"none\"\nseparation_depth_m = 2.0"),
-            "[solve.base] separation_depth_m with separation = \"none\" (it is the depth up to which \"thin\" holds "
-            "columns). Leave it out, or take separation = \"thin\"");
-}
-
-TEST(SolveOptions, separation_comes_back_from_the_recipe_as_used) {
-  const test::Scratch scratch;
-  for (const auto& [name, kind] :
-       {std::pair{"free", Separation::free}, {"none", Separation::none}, {"thin", Separation::thin}}) {
-    SolveOptions o;
-    o.base.separation = kind;
-    if (kind == Separation::thin) o.base.separation_depth = 2.5;
-    const std::string text = recipe::to_used_toml(o, "solve");
-    EXPECT_NE(text.find("separation = \"" + std::string(name) + "\""), std::string::npos) << text;
-    const recipe::Recipe again(scratch.write("used.toml", text));
-    const auto read = again.read<SolveOptions>("solve");
-    EXPECT_EQ(read.base.separation, kind);
-    EXPECT_EQ(read.base.separation_depth, o.base.separation_depth);
-  }
-}
-
 TEST(SolveOptions, repeated_bits_need_explicit_steps_without_a_budget) {
   for (const std::string other : {"integrator = \"newmark\"", "energy_budget = true"})
     EXPECT_EQ(
@@ -450,7 +415,6 @@ TEST(Hindrances, of_rest_are_named_by_their_key) {
     return beyond_rest(o).key;
   };
   EXPECT_EQ(key([](SolveOptions& o) { o.material.model = MaterialModel::mu_of_i; }), "model = \"mu-of-i\"");
-  EXPECT_EQ(key([](SolveOptions& o) { o.base.separation = Separation::thin; }), "[solve.base] separation = \"thin\"");
   EXPECT_EQ(key([](SolveOptions& o) { o.deterministic = true; }), "[solve] deterministic = true");
   EXPECT_EQ(key([](SolveOptions& o) { o.energy_budget = true; }), "[solve] energy_budget = true");
 }

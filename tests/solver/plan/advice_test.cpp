@@ -213,18 +213,6 @@ TEST(Plan, says_the_steps_that_auto_has_settled_on) {
       test::holds(steps(), {"inertia implicit along columns (kappa = 0.3), 1 of the CFL step of the cells; at rest"}));
 }
 
-TEST(Plan, says_what_may_leave_the_bed) {
-  SolveOptions o;
-  const auto bed = [&] { return features(begun(block(), o)).at(3); };
-  EXPECT_EQ(bed().find("left"), std::string::npos) << bed();
-  o.base.separation = Separation::none;
-  EXPECT_NE(bed().find(", never left by what lies on it"), std::string::npos) << bed();
-  o.base.separation = Separation::thin;
-  EXPECT_NE(bed().find(", left only by what is deeper than the spacing of the grid"), std::string::npos) << bed();
-  o.base.separation_depth = 2.5;
-  EXPECT_NE(bed().find(", left only by what is deeper than 2.5 m"), std::string::npos) << bed();
-}
-
 TEST(Plan, names_every_gauge_and_its_place) {
   SolveOptions o;
   EXPECT_FALSE(has(features(begun(block(), o)), "gauge"));

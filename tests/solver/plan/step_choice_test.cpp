@@ -137,7 +137,6 @@ TEST(StepChoice, takes_no_implicit_steps_where_something_keeps_from_them) {
   };
   EXPECT_TRUE(rests([](SolveOptions&) {}));
   EXPECT_FALSE(rests([](SolveOptions& o) { o.material.model = MaterialModel::mu_of_i; }));
-  EXPECT_FALSE(rests([](SolveOptions& o) { o.base.separation = Separation::none; }));
   EXPECT_FALSE(rests([](SolveOptions& o) { o.deterministic = true; }));
   EXPECT_FALSE(rests([](SolveOptions& o) { o.energy_budget = true; }));
 }

@@ -56,16 +56,6 @@ TEST(Settings, angles_become_coefficients_and_words_become_laws) {
   EXPECT_EQ(obstacles.at(0).friction, coefficient(23));
 }
 
-TEST(Settings, shallow_columns_are_those_below_a_cell_unless_the_recipe_says_otherwise) {
-  SolveOptions o;
-  EXPECT_EQ(make_settings(o, grid).common.separation.kind, Separation::free);
-  o.base.separation = Separation::thin;
-  EXPECT_EQ(make_settings(o, grid).common.separation.depth, grid.spacing);
-  o.base.separation_depth = 7;
-  EXPECT_EQ(make_settings(o, grid).common.separation.depth, 7);
-  EXPECT_EQ(for_gravity_loading(make_settings(o, grid), 3).common.separation.kind, Separation::free);
-}
-
 TEST(Settings, steps_transfer_and_gravity_are_those_of_the_recipe) {
   SolveOptions o;
   o.cfl = 0.3;
