@@ -198,6 +198,10 @@ pictures: with-tests ## the documents' pictures, from runs and tables [PICTURES=
 	@/usr/bin/python3 tools/make-pictures.py --bin $(BUILD)/bin --work $(BUILD)/pictures \
 	  $(if $(DATA),--data '$(DATA)') $(PICTURES)
 
+test-gpu: with-tests ## the tests of kernels on this machine's GPU, into docs/benchmarks/gpu-tests.csv
+	@cmake --build $(BUILD) -j $(JOBS) --target talus-tests-solver
+	@tools/record-gpu-tests.py $(BUILD)/bin/talus-tests-solver
+
 tables: ## the documents' tables of figures [VALIDATION=build/validation.json: from a new run of the validation]
 	@python3 tools/make-tables.py $(if $(VALIDATION),--validation $(VALIDATION))
 

@@ -156,9 +156,10 @@ std::vector<BlockSlot> slots_of(const SparseGrid<Real, Device>& grid) {
   return slots;
 }
 
-/// A GPU that is not there skips a test aloud, and fails it where one was promised.
+/// A GPU that is not there skips a test aloud, and fails it where one was promised. Where it is there, the test's
+/// report says that it was used (tools/record-gpu-tests.py).
 inline void need_gpu() {
-  if (gpu_available()) return;
+  if (gpu_available()) return ::testing::Test::RecordProperty("on", "gpu");
   if (std::getenv("TALUS_REQUIRE_GPU") != nullptr) FAIL() << "TALUS_REQUIRE_GPU is set, but no GPU can be used";
   GTEST_SKIP() << "no GPU on this machine: the same test ran on the CPU";
 }
