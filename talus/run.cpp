@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "common/ensemble/member_table.hpp"
 #include "common/ensemble/options.hpp"
@@ -124,12 +125,28 @@ std::vector<std::string> needed_stages(const Request& request, const recipe::Rec
 int run_one(const std::string& stage, const StageCall& call) {
   const Stage program = stage_called(stage);
   const StageOutcome outcome = call_stage(program, call);
-  if (outcome.code == ExitCode::success) print_results(outcome.results);
+  if (outcome.code == ExitCode::success && context().verbosity != Verbosity::brief) print_results(outcome.results);
   return report_faults(program.name, outcome);
 }
 
+/// While the object lives, a stage before the last tells a person at a terminal its progress and warnings alone.
+class BriefStage {
+ public:
+  explicit BriefStage(const std::string& stage) : before_(context().verbosity) {
+    if (stage != "postprocess" && before_ == Verbosity::normal && ::isatty(STDERR_FILENO) == 1)
+      context().verbosity = Verbosity::brief;
+  }
+  BriefStage(const BriefStage&) = delete;
+  BriefStage& operator=(const BriefStage&) = delete;
+  ~BriefStage() { context().verbosity = before_; }
+
+ private:
+  Verbosity before_;
+};
+
 int bring_up_to_date(const Request& request, const std::string& stage) {
   stop_if_interrupted("running the stages");
+  const BriefStage brief(stage);
   StageCall call = call_of(request, stage);
   call.if_outdated = true;
   if (stage == "solve") call.flags.emplace_back("--resume", "");
@@ -195,7 +212,8 @@ int run_scene(const Request& request) {
     if (const int code = bring_up_to_date(request, stage); code != 0) return code;
   }
   if (request.plan) return print_plan(request);
-  if (!inner) log_info(fmt::format("{}: {}", recipe.scene_name(), page_in(request.out).string()));
+  if (!inner && ::isatty(STDERR_FILENO) != 1)
+    log_info(fmt::format("{}: {}", recipe.scene_name(), page_in(request.out).string()));
   return 0;
 }
 

@@ -97,6 +97,7 @@ bool Context::is_interrupted() const { return interrupted_ || (heeds_signals_ &&
 void Context::log(LogLevel level, const std::string& text) {
   if (level == LogLevel::detail && verbosity != Verbosity::verbose) return;
   if (!redirect_ && verbosity == Verbosity::quiet && level != LogLevel::error) return;
+  if (!redirect_ && verbosity == Verbosity::brief && level == LogLevel::info) return;
   const std::string shown =
       without_control_characters(level == LogLevel::progress ? text : with_short_numbers(paths_->in_message(text)));
   const LogSink& sink = redirect_ ? redirect_ : sink_;

@@ -27,8 +27,9 @@
 
 namespace talus {
 
-/// How much is said on stderr.
-enum class Verbosity { quiet, normal, verbose };
+/// How much is said on stderr: errors alone, with advice, warnings and progress (brief), with information, with
+/// details.
+enum class Verbosity { quiet, brief, normal, verbose };
 
 /// The kind of a line of the log. `progress` is a line that replaces the one before.
 enum class LogLevel { detail, progress, info, advice, warning, error };

@@ -267,14 +267,14 @@ void check_three_d(const ThreeDParts& options, const Run& run, const PointFrames
   if (size.all() > most)
     throw DataError({words, fmt::format("{:g} MB are allowed", most),
                      "Leave points out of outputs in [postprocess], or take a larger frame_interval_s"});
-  log_info(words);
+  log_detail(words);
 }
 
 Files write_three_d(const fs::path& folder, const ThreeDParts& options, const Run& run, const PointFrames& points) {
   if (!options.any()) return {};
   const auto begun = std::chrono::steady_clock::now();
   auto results = ThreeDFiles{folder, options, run, points}.write();
-  log_info(fmt::format("{}: {:.1f} MB in {:.1f} s", folder.string(), megabytes_under(folder),
+  log_detail(fmt::format("{}: {:.1f} MB in {:.1f} s", folder.string(), megabytes_under(folder),
                        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count()));
   return results;
 }

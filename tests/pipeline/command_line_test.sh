@@ -199,6 +199,7 @@ test_a_terminal_shows_few_lines_and_the_report_last() {
   at_a_terminal shown "$bin/talus-postprocess" recipe.toml --out out -v
   (($(grep -c '/out/' shown) >= 20)) || fail "-v does not list the files"
   at_a_terminal shown "$bin/talus" run recipe.toml --out anew
+  (($(wc -l <shown) <= 25)) || fail "talus run shows $(wc -l <shown) lines"
   [[ $(tail -n 1 shown) == *anew/report.html ]] || fail "the last line is $(tail -n 1 shown)"
 }
 
