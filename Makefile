@@ -37,7 +37,7 @@ groups := $(if $(filter $(for_tests),$(MAKECMDGOALS))$(filter-out 0 no,$(WITH_TE
 
 .PHONY: help setup setup-tests build say-demo demo demo-weakening install install-library wheel package \
   check-install image with-tests test sanitized check check-threads check-faults check-qgis check-three-d \
-  check-recipes fuzz validate lint docs pictures tables scores check-docs check-tutorials bundle bundle-solver \
+  check-recipes fuzz validate lint docs pictures facts scores test-gpu check-docs check-tutorials bundle bundle-solver \
   clean FORCE
 
 help: ## this list
@@ -202,7 +202,7 @@ test-gpu: with-tests ## the tests of kernels on this machine's GPU, into docs/be
 	@cmake --build $(BUILD) -j $(JOBS) --target talus-tests-solver
 	@tools/record-gpu-tests.py $(BUILD)/bin/talus-tests-solver
 
-tables: ## the documents' tables of figures [VALIDATION=build/validation.json: from a new run of the validation]
+facts: ## the documents' tables, from files of results; figures without a source are named [VALIDATION=FILE.json: new rows]
 	@python3 tools/make-tables.py $(if $(VALIDATION),--validation $(VALIDATION))
 
 # All scenes that end in a score; those of real events need their data, and the rest of Xinmo's are nobody's to give.

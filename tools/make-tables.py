@@ -8,9 +8,14 @@ usage: tools/make-tables.py                        the tables of docs/benchmarks
        tools/make-tables.py --scores OUT...        first read the scores of scenes from these folders of results
 
 docs/benchmarks/speed-against-error.csv, kernels-h200.csv   of `make -C pipelines/benchmarks`
+docs/benchmarks/gpu-tests.csv          of `make test-gpu`
 docs/benchmarks/validation.csv         all rows of `make validate LONG=1`, by --validation; files of different cases
                                        made at one commit are put together, others are refused
 docs/benchmarks/scores.csv             of the scenes of pipelines/, by --scores
+Then every section of README, docs/explanation and pipelines/*/README.md whose prose states a figure with a unit has to
+name its source: a commit, a day, a publication by its year, a table of these, a case, a test, a command, or the page
+where that stands. The exit status is 1 where one does not, and each is named.
+
 A page holds "<!-- table: NAME -->" and "<!-- end of table -->"; what stands between them is written here.
 """
 import csv
@@ -24,7 +29,7 @@ import textwrap
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGES = ["README.md", "docs/explanation/validation.md", "docs/explanation/performance.md"]
+PAGES = ["README.md", *(f"docs/explanation/{page}.md" for page in ("validation", "performance", "architecture"))]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end of table -->)", re.S)
 SCORES = ROOT / "docs/benchmarks/scores.csv"
 VALIDATION = ROOT / "docs/benchmarks/validation.csv"
@@ -189,6 +194,15 @@ def kernels():
             "`make -C pipelines/benchmarks kernels`."]
 
 
+def gpu_tests():
+    with (ROOT / "docs/benchmarks/gpu-tests.csv").open(encoding="utf-8") as table:
+        rows = list(csv.DictReader(table))
+    passed = sum(row["result"] == "passed" for row in rows)
+    text = (f"Of {len(rows)} cases of `tests/solver` that use a GPU {passed} passed on one {rows[0]['machine']}, "
+            f"{commits_and_days(rows, 'commit', 'date')} (`make test-gpu`).")
+    return textwrap.wrap(text, 120, break_on_hyphens=False)
+
+
 def scores():
     with SCORES.open(encoding="utf-8") as table:
         return list(csv.DictReader(table))
@@ -264,6 +278,7 @@ TABLES = {
     "validation": validation,
     "speed": speed,
     "kernels": kernels,
+    "gpu-tests": gpu_tests,
     "events": events,
     "scenes": scenes,
 }
@@ -274,6 +289,24 @@ def filled(path):
     root = "../" * (len(path.relative_to(ROOT).parts) - 1)
     return BLOCK.sub(lambda match: match.group(1) + "\n".join(TABLES[match.group(2)]()).replace("ROOT", root) + "\n" +
                      match.group(3), path.read_text(encoding="utf-8"))
+
+
+FIGURE = re.compile(r"(?<![\w.-])\d+(?:[.,]\d+)*(?: to \d+(?:\.\d+)?)? ?(?:%|m/s|ms\b|s\b|µs|GB|MB|min(?:utes)?\b)")
+SOURCE = re.compile(r"\b(?=[0-9a-f]*\d)[0-9a-f]{7,9}\b|\b(?:18|19|20)\d\d\b|<!-- table|\]\(|\b[A-D]\d[a-z]?\b|`make |"
+                    r"tests?\b.*`")
+
+
+def without_source():
+    """Sections with figures in their prose and no source, "page: heading (first figures)". The theory defines."""
+    pages = ["README.md", *ROOT.glob("docs/explanation/*.md"), *ROOT.glob("pipelines/*/README.md")]
+    for page in sorted(ROOT / page for page in pages):
+        text = re.sub(r"^(```.*?^```|    [^\n]*)$", "", page.read_text(encoding="utf-8"), flags=re.S | re.M)
+        for section in re.split(r"^(?=#)", text, flags=re.M):
+            prose = "\n".join(line for line in section.splitlines() if not line.startswith("|"))
+            figures = FIGURE.findall(prose)
+            if figures and not SOURCE.search(section) and page.name != "theory.md":
+                heading = section.partition("\n")[0].lstrip("# ")
+                yield f"{page.relative_to(ROOT)}: {heading} ({', '.join(figures[:3])})"
 
 
 def main():
@@ -292,6 +325,8 @@ def main():
         if text != (ROOT / name).read_text(encoding="utf-8"):
             (ROOT / name).write_text(text, encoding="utf-8")
             print(ROOT / name)
+    if unsaid := list(without_source()):
+        sys.exit("tools/make-tables.py: these sections name no source of their figures:\n" + "\n".join(unsaid))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 tree() {
   mkdir -p tree/docs/explanation tree/tools
   cp "$TALUS_SOURCE/README.md" tree
-  cp "$TALUS_SOURCE"/docs/explanation/{validation,performance}.md tree/docs/explanation
+  cp "$TALUS_SOURCE"/docs/explanation/{validation,performance,architecture}.md tree/docs/explanation
   cp -r "$TALUS_SOURCE/docs/benchmarks" tree/docs
   cp "$TALUS_SOURCE/tools/make-tables.py" tree/tools
 }
@@ -32,9 +32,17 @@ row() {
 test_pages_show_what_the_files_hold() {
   tree
   expect_exit 0 make_tables
-  for page in README.md docs/explanation/validation.md docs/explanation/performance.md; do
-    cmp "tree/$page" "$TALUS_SOURCE/$page" || fail "the tables of $page are not of the files: make tables"
+  for page in README.md docs/explanation/{validation,performance,architecture}.md; do
+    cmp "tree/$page" "$TALUS_SOURCE/$page" || fail "the tables of $page are not of the files: make facts"
   done
+}
+
+test_a_figure_without_a_source_is_named() {
+  tree
+  printf '%s\n' '# One' 'It takes 12 s.' '## Two' 'It took 3 s (1a2b3c4d).' '## Three' 'Five cells.' >tree/docs/explanation/a.md
+  expect_exit 1 make_tables
+  expect_words 'docs/explanation/a.md: One (12 s)'
+  if grep -qE 'Two|Three' stderr; then fail "what has a source or no figure is named"; fi
 }
 
 test_misses_stand_first_with_the_number_beside_what_is_wanted() {
@@ -116,6 +124,45 @@ test_rows_of_two_commits_are_not_drawn() {
   expect_exit 1 /usr/bin/python3 "$TALUS_SOURCE/tools/plot-speed-against-error.py" mixed.csv drawn.png
   expect_words 'rows of more than one commit'
   [[ ! -e drawn.png ]] || fail "it was drawn"
+}
+
+# A program of tests that reports two cases on a GPU and one beside it, and a GPU's name.
+pretend_gpu() {
+  cat >tests <<'SCRIPT'
+#!/bin/bash
+[[ $TALUS_REQUIRE_GPU == 1 ]] || exit 9
+suites='"testsuites": []'
+[[ $GTEST_SHARD_INDEX == 1 ]] || suites='"testsuites": [{"name": "Steps", "testsuite": [
+  {"name": "fall", "result": "COMPLETED", "on": "gpu"}, {"name": "rest", "result": "COMPLETED", "on": "gpu"'$FAILS'},
+  {"name": "read", "result": "COMPLETED"}]}]'
+echo "{$suites}" >"${GTEST_OUTPUT#json:}"
+SCRIPT
+  printf '%s\n' '#!/bin/bash' 'echo "A GPU"' >nvidia-smi
+  chmod +x tests nvidia-smi
+}
+
+test_a_file_tells_which_cases_have_passed_on_a_gpu() {
+  pretend_gpu
+  local record=("$TALUS_SOURCE/tools/record-gpu-tests.py" ./tests --commit 0123abcd --jobs 2 --out gpu.csv)
+  PATH=$PWD:$PATH expect_exit 0 /usr/bin/python3 "${record[@]}"
+  grep -qF '3 cases, 2 of them on one A GPU, 0 failed' stdout || fail "it says something else"
+  grep -qE '^Steps.rest,passed,A GPU,0123abcd,2[0-9-]+$' gpu.csv || fail "$(<gpu.csv)"
+  if grep -q read gpu.csv; then fail "a case that used no GPU is in the file"; fi
+  FAILS=', "failures": [{"failure": "3 is not 4"}]' PATH=$PWD:$PATH expect_exit 1 /usr/bin/python3 "${record[@]}"
+  grep -qF 'Steps.rest: 3 is not 4' stdout || fail "the failure is not named"
+  grep -q '^Steps.rest,failed,' gpu.csv || fail "$(<gpu.csv)"
+}
+
+# What no check of every change can do: kernels run on a GPU. So a file of results is part of the project.
+test_kernels_passed_on_a_gpu_not_more_than_ten_changes_of_them_ago() {
+  local results=$TALUS_SOURCE/docs/benchmarks/gpu-tests.csv commit changes git=(git -C "$TALUS_SOURCE")
+  if grep -vE '^test,result|,passed,' "$results"; then fail "not every case has passed"; fi
+  commit=$(sed -n 2p "$results" | cut -d, -f4)
+  "${git[@]}" cat-file -e "$commit" 2>/dev/null || skip "there is no history here that knows $commit"
+  mapfile -t kernels < <("${git[@]}" grep -lE 'TALUS_HD|__global__' -- solver)
+  changes=$("${git[@]}" rev-list --count "$commit..HEAD" -- "${kernels[@]}")
+  [[ ${#kernels[@]} -gt 50 && $changes -le 10 ]] ||
+    fail "$changes commits have changed kernels since $commit, whose tests are recorded. On a GPU: make test-gpu"
 }
 
 run_test "$@"
