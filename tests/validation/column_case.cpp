@@ -121,12 +121,12 @@ void paper_table(Bench& bench, Chart& profile) {
     }
     steps.series.push_back(s);
   };
-  // The tolerances are the paper's own errors.
+  // The tolerances are the paper's own errors; of its explicit steps (22.7 % at 1e-4 s, none given at 1e-5 s) the least.
   for (const LinearScheme& scheme : linear_schemes()) {
     study("reference, " + scheme.name, "newmark", scheme.overrides + Overrides{{"solve.preset", words("reference")}},
           {{1e-4, scheme.name == "pcg" ? 0.018 : 0.014}, {1e-3, 0.018}}, scheme.name == "pcg" ? 1 : 3);
   }
-  study("explicit", "explicit", {{"solve.transfer_time_s", 1e30}}, {{1e-4, 0.227}, {1e-5, 0.227}, {2e-6, 0.012}}, 2);
+  study("explicit", "explicit", {{"solve.transfer_time_s", 1e30}}, {{1e-4, 0.012}, {1e-5, 0.012}, {2e-6, 0.012}}, 2);
   bench.picture("A1-step-size", png_of(steps));
 }
 
