@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/error.hpp"
 #include "common/recipe/paths.hpp"
@@ -37,8 +40,18 @@ constexpr const char* footer =
 struct Asked {
   Request request;
   std::string recipe, out;
+  bool json = false;  ///< the log goes to stderr as lines of JSON
   std::function<int()> command;
 };
+
+/// Writes a line of the log as an object: level and text, of progress the percent too.
+void write_json(LogLevel level, const std::string& text) {
+  constexpr const char* names[] = {"detail", "progress", "info", "advice", "warning", "error"};
+  nlohmann::json line{{"level", names[static_cast<int>(level)]}, {"text", text}};
+  if (int percent = 0; level == LogLevel::progress && std::sscanf(text.c_str(), "%d %%", &percent) == 1)
+    line["percent"] = percent;
+  fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
 
 void declare_scene(CLI::App& app, Asked& asked) {
   app.add_option("recipe", asked.recipe, "The scene's recipe (TOML)")->type_name("recipe.toml")->required();
@@ -76,6 +89,7 @@ void declare(CLI::App& app, Asked& asked) {
   declare_scene(*run, asked);
   run->add_flag("--plan", asked.request.plan,
                 "Prepare the domain and print points, memory, steps and the time to expect; run no solver");
+  run->add_flag("--json", asked.json, "The log on stderr as lines of JSON: level, text, of progress the percent");
   run->callback([&] { asked.command = [&] { return run_scene(scene_request(asked)); }; });
   CLI::App* check = app.add_subcommand("check", "Every fault of all stages in one listing; writes nothing");
   declare_scene(*check, asked);
@@ -127,7 +141,8 @@ void declare_data(CLI::App& app, DataRequest& data, Asked& asked) {
   command->callback([&] { asked.command = [&] { return make_data(data); }; });
 }
 
-int guarded(int argc, char** argv) {
+/// `json` takes over the log where the command line asks for that.
+int guarded(int argc, char** argv, std::optional<RedirectLog>& json) {
   Asked asked;
   CLI::App app("One command over the stages of Talus", "talus");
   app.require_subcommand(0, 1);
@@ -161,6 +176,7 @@ int guarded(int argc, char** argv) {
   own.threads = asked.request.threads;
   own.network = asked.request.network;
   if (!app.got_subcommand("data")) watch_for_interrupts("talus");
+  if (asked.json) json.emplace(write_json);
   return asked.command();
 }
 
@@ -171,9 +187,10 @@ int main(int argc, char** argv) {
   h5::prepare_library();
   Context own;
   const BindContext bind(own);
+  std::optional<RedirectLog> json;
   int code = 0;
   const StageOutcome outcome = outcome_of([&] {
-    code = guarded(argc, argv);
+    code = guarded(argc, argv, json);
     return std::vector<std::filesystem::path>{};
   });
   return outcome.code == ExitCode::success ? code : report_faults("talus", outcome);

@@ -199,8 +199,22 @@ test_a_terminal_shows_few_lines_and_the_report_last() {
   at_a_terminal shown "$bin/talus-postprocess" recipe.toml --out out -v
   (($(grep -c '/out/' shown) >= 20)) || fail "-v does not list the files"
   at_a_terminal shown "$bin/talus" run recipe.toml --out anew
-  (($(wc -l <shown) <= 25)) || fail "talus run shows $(wc -l <shown) lines"
-  [[ $(tail -n 1 shown) == *anew/report.html ]] || fail "the last line is $(tail -n 1 shown)"
+  (($(grep -cvE '^(warning|advice): ' shown) <= 25)) || fail "talus run shows $(wc -l <shown) lines"
+  [[ $(tail -n 1 shown) == *anew/report.html\ * ]] || fail "the last line is $(tail -n 1 shown)"
+}
+
+test_the_log_of_a_run_can_be_read_by_a_program() {
+  scene
+  TALUS_PROGRESS_S=0.001 expect_exit 0 "$bin/talus" run recipe.toml --out out --json
+  python3 - <<'PYTHON' || fail "it is no log in JSON"
+import json, os, sys
+lines = [json.loads(line) for line in open(os.environ["TALUS_SCRATCH"] + "/stderr", encoding="utf-8")]
+levels = {line["level"] for line in lines}
+assert {"info", "progress", "warning"} <= levels <= {"info", "progress", "advice", "warning"}, levels
+assert any(0 < line.get("percent", -1) <= 100 for line in lines), "no percent"
+PYTHON
+  expect_exit 2 "$bin/talus" run recipe.toml --out out --json --set solve.end_time_s=-1
+  grep -q '^{"level":"error","text":"' "$TALUS_SCRATCH/stderr" || fail "a fault is no line of JSON"
 }
 
 run_test "$@"
