@@ -64,6 +64,9 @@ test_raster_that_the_law_does_not_use() {
   sed -i 's/^friction_angle_deg = 15.0/law = "voellmy"\nfriction_angle_deg = 15.0/' recipe.toml
   expect_exit 0 preprocess
   expect_exit 0 solve
+  expect_exit 0 postprocess
+  tr '\n' ' ' <out/score.txt | grep -qF 'where no raster of turbulence_m_s2 says otherwise) may be measured' ||
+    fail "the score names a number that a raster has taken the place of: $(head -n 5 out/score.txt)"
 }
 
 run_test "$@"
