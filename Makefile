@@ -18,7 +18,7 @@ RECIPE_JOBS ?= 2
 
 programs := talus talus-preprocess talus-solve talus-postprocess talus-make-terrain
 # With a compiler cache every source is a unit of its own; without one those of a folder are compiled together.
-ccache := $(shell command -v ccache)
+ccache ?= $(shell command -v ccache)
 quickly := $(if $(ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_CUDA_COMPILER_LAUNCHER=ccache,-DTALUS_BATCHES=ON)
 
 # Man pages, completions, styles and notices go with the programs (cmake/manuals.cmake).
