@@ -202,7 +202,7 @@ test-gpu: with-tests ## the tests of kernels on this machine's GPU, into docs/be
 	@cmake --build $(BUILD) -j $(JOBS) --target talus-tests-solver
 	@tools/record-gpu-tests.py $(BUILD)/bin/talus-tests-solver
 
-facts: ## the documents' tables, from files of results; figures without a source are named [VALIDATION=FILE.json: new rows]
+facts: ## the documents' tables, from files of results; names figures without a source [VALIDATION=FILE.json]
 	@python3 tools/make-tables.py $(if $(VALIDATION),--validation $(VALIDATION))
 
 # All scenes that end in a score; those of real events need their data, and the rest of Xinmo's are nobody's to give.

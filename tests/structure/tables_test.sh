@@ -39,7 +39,8 @@ test_pages_show_what_the_files_hold() {
 
 test_a_figure_without_a_source_is_named() {
   tree
-  printf '%s\n' '# One' 'It takes 12 s.' '## Two' 'It took 3 s (1a2b3c4d).' '## Three' 'Five cells.' >tree/docs/explanation/a.md
+  printf '%s\n' '# One' 'It takes 12 s.' '## Two' 'It took 3 s (1a2b3c4d).' '## Three' 'Five cells.' \
+    >tree/docs/explanation/a.md
   expect_exit 1 make_tables
   expect_words 'docs/explanation/a.md: One (12 s)'
   if grep -qE 'Two|Three' stderr; then fail "what has a source or no figure is named"; fi
