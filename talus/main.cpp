@@ -9,6 +9,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 
 #include "common/error.hpp"
 #include "common/recipe/paths.hpp"
@@ -48,8 +49,9 @@ struct Asked {
 void write_json(LogLevel level, const std::string& text) {
   constexpr const char* names[] = {"detail", "progress", "info", "advice", "warning", "error"};
   nlohmann::json line{{"level", names[static_cast<int>(level)]}, {"text", text}};
-  if (int percent = 0; level == LogLevel::progress && std::sscanf(text.c_str(), "%d %%", &percent) == 1)
-    line["percent"] = percent;
+  char* behind = nullptr;
+  const long percent = std::strtol(text.c_str(), &behind, 10);
+  if (level == LogLevel::progress && std::string_view(behind).starts_with(" %")) line["percent"] = percent;
   fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 

@@ -275,7 +275,7 @@ Files write_three_d(const fs::path& folder, const ThreeDParts& options, const Ru
   const auto begun = std::chrono::steady_clock::now();
   auto results = ThreeDFiles{folder, options, run, points}.write();
   log_detail(fmt::format("{}: {:.1f} MB in {:.1f} s", folder.string(), megabytes_under(folder),
-                       std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count()));
+                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count()));
   return results;
 }
 
