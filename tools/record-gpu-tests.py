@@ -36,7 +36,7 @@ def committed():
 
 
 def cases_of(program, jobs, scratch):
-    """The results of all cases, as GoogleTest reports them, and whether each process has ended well."""
+    """(name, result) of all cases, as GoogleTest reports them. Ends here where a process has not come to its last."""
     running = []
     for shard in range(jobs):
         report = pathlib.Path(scratch) / f"{shard}.json"
