@@ -23,11 +23,17 @@ struct Linear {
   TALUS_HD static int first(Real offset) {
     return offset < Real(0) ? -1 : 0;
   }
-  /// The offset as it is: hats end at an edge without a change.
+  /// This function writes the weights of a point nearer than `lowest` to a node as those at `lowest`, and returns the
+  /// offset they stand for. A lone point would leave next to no mass on the node behind it, whose velocity then strains
+  /// it out of all measure: sum N'^2 / N is 1 / s + 1 / (1 - s), 11 at s = 0.1. An edge changes nothing.
   template <class Real>
-  TALUS_HD static Real weigh_edge(Real offset, int, Real, Real, Real[2], Real[2]) {
-    return offset;
-  }  // hats end at an edge as they are
+  TALUS_HD static Real weigh_edge(Real offset, int, Real lowest, Real, Real weight[2], Real[2]) {
+    const Real node = Real(first(offset)), s = offset - node, most = Real(1) - lowest;
+    const Real kept = s < lowest ? lowest : s > most ? most : s;
+    weight[0] = Real(1) - kept;
+    weight[1] = kept;
+    return node + kept;
+  }
   /// This function writes weights and slopes, per cell, of the two nodes.
   template <class Real>
   TALUS_HD static void weigh(Real offset, Real, Real weight[2], Real slope[2]) {

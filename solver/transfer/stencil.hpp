@@ -82,10 +82,11 @@ struct Stencil {
     Real *weight, *slope;
     bool* edge;
   };
-  /// The offset that the weights of one direction stand for, once they are made anew where the point is beside an edge.
+  /// The offset that the weights of one direction stand for, once they are made anew where the point is beside an edge;
+  /// hats have one at every node.
   TALUS_HD static Real beside(int cell, const Range& range, Real offset, Real half, const Weights& to) {
     *to.edge = width == 3 && (cell == range.first || cell == range.last);
-    if (!*to.edge) return offset;
+    if (width == 3 && !*to.edge) return offset;
     return Shape::weigh_edge(offset, cell == range.first ? 1 : -1, range.lowest, half, to.weight, to.slope);
   }
 
