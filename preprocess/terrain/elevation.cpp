@@ -74,11 +74,22 @@ const char* name_of(VerticalUnit unit) {
   return "";
 }
 
-/// The cells in the middle of a raster, 512 x 512 at most.
-Raster middle_of(const RasterFile& file) {
-  constexpr int most = 512;
-  const int columns = std::min(most, file.grid().columns), rows = std::min(most, file.grid().rows);
-  return file.read({(file.grid().columns - columns) / 2, (file.grid().rows - rows) / 2, columns, rows});
+/// Pieces of a raster that its statistics are taken of: all of it up to 2048 x 2048 cells, of more 16 pieces of 512 x
+/// 512, as far apart as they go.
+std::vector<Raster> pieces_of(const RasterFile& file) {
+  constexpr int side = 512, most = 4;
+  const auto begins = [&](int cells) {
+    const int count = std::min(most, (cells + side - 1) / side), last = std::max(0, cells - side);
+    std::vector<int> found;
+    for (int n = 0; n < count; ++n)
+      found.push_back(count == 1 ? 0 : static_cast<int>(static_cast<long>(last) * n / (count - 1)));
+    return found;
+  };
+  const int columns = std::min(side, file.grid().columns), rows = std::min(side, file.grid().rows);
+  std::vector<Raster> pieces;
+  for (const int row : begins(file.grid().rows))
+    for (const int column : begins(file.grid().columns)) pieces.push_back(file.read({column, row, columns, rows}));
+  return pieces;
 }
 
 /// As it was read, not placed.
@@ -137,7 +148,7 @@ Elevation read_elevation(const std::string& key, const std::filesystem::path& fi
     elevation.raster.grid = elevation.on_disk->grid();
     if (key.starts_with("bed.")) return elevation;
     elevation.has_fill = std::make_shared<bool>(false);
-    warn_of_statistics(middle_of(*elevation.on_disk), file);
+    warn_of_statistics(pieces_of(*elevation.on_disk), file);
   }
   return elevation;
 }

@@ -75,32 +75,40 @@ double jump_over(int at, int along, const Height& height) {
   return straight ? jump : 0;
 }
 
-void warn_of_straight_jumps(const Raster& heights, const std::filesystem::path& file) {
+bool warn_of_straight_jumps(const Raster& heights, const std::filesystem::path& file) {
   const StraightJumps found = straight_jumps(heights);
-  if (found.rows + found.columns == 0) return;
+  if (found.rows + found.columns == 0) return false;
   warn("straight-jumps",
        fmt::format("{}: heights jump by {:.2g} m (median) over {} lines along rows and {} along columns, from rim to "
                    "rim, the first at {} {:.1f}: stripes of a scanner, or tiles of a mosaic that do not fit. A dam, a "
                    "wall or terraces as straight as that are ground. Level the parts, or take another model",
                    file.string(), found.size, found.rows, found.columns, found.rows > 0 ? "y" : "x", found.at),
        {{"jump", found.size, "m"}, {"lines", static_cast<double>(found.rows + found.columns), "1"}});
+  return true;
 }
 
-void warn_of_steps(const Raster& heights, const std::filesystem::path& file) {
+bool warn_of_steps(const Raster& heights, const std::filesystem::path& file) {
   const double step = common_step(heights, hardly_matters);
-  if (step == 0) return;
+  if (step == 0) return false;
   warn("stepped-heights",
        fmt::format(
            "{}: heights come in steps of {:.3g} m (integers, or rounded): each is off by {:.2g} m (one sigma), and a "
            "slope from cell to cell is told in steps of {:.2g} degrees. Take real numbers where they are to be had",
            file.string(), step, step / std::sqrt(12.0), std::atan(step / heights.grid.cell) * 180 / std::numbers::pi),
        {{"step", step, "m"}});
+  return true;
 }
 
-void warn_of_noise(const Raster& heights, const std::filesystem::path& file) {
-  const double ratio = roughness_ratio(heights);
+void warn_of_noise(const std::vector<Raster>& pieces, const std::filesystem::path& file) {
+  std::vector<double> ratios, heights;
+  for (const Raster& piece : pieces) {
+    if (const double ratio = roughness_ratio(piece); !std::isnan(ratio)) ratios.push_back(ratio);
+    const std::vector<double> valid = valid_heights(piece);
+    heights.insert(heights.end(), valid.begin(), valid.end());
+  }
+  const double ratio = ratios.empty() ? 0 : median(ratios);
   if (!(ratio > noise_like)) return;
-  const auto [low, high] = std::ranges::minmax(valid_heights(heights));
+  const auto [low, high] = std::ranges::minmax(heights);
   warn("noise-like-heights",
        fmt::format("{}: heights from {:.4g} to {:.4g} m change from cell to cell like noise (median second over first "
                    "difference {:.2f}; ground has 0.1 to 0.6): a map of slope, shade or another quantity; a surface "
@@ -110,10 +118,10 @@ void warn_of_noise(const Raster& heights, const std::filesystem::path& file) {
        {{"roughness_ratio", ratio, "1"}});
 }
 
-void warn_of_level_piece(const Raster& heights, const std::filesystem::path& file) {
+bool warn_of_level_piece(const Raster& heights, const std::filesystem::path& file) {
   const LevelPiece level = most_common_height(heights);
   const double share = static_cast<double>(level.cells) / static_cast<double>(level.valid);
-  if (share < level_share || level.lower_rim < lower_share) return;
+  if (share < level_share || level.lower_rim < lower_share) return false;
   const auto columns = static_cast<std::size_t>(heights.grid.columns);
   warn("level-ground",
        fmt::format("{}: {:.0f} % of the cells hold {:.7g} m exactly, one at x {:.1f}, y {:.1f}, and {:.0f} % of what "
@@ -122,6 +130,7 @@ void warn_of_level_piece(const Raster& heights, const std::filesystem::path& fil
                    file.string(), 100 * share, level.value, heights.grid.x(static_cast<int>(level.first % columns)),
                    heights.grid.y(static_cast<int>(level.first / columns)), 100 * level.lower_rim),
        {{"share", share, "1"}, {"value", level.value, "m"}, {"lower_rim", level.lower_rim, "1"}});
+  return true;
 }
 
 }  // namespace
@@ -189,16 +198,17 @@ StraightJumps straight_jumps(const Raster& heights) {
   const MapGrid& grid = heights.grid;
   StraightJumps found;
   std::vector<double> sizes;
-  for (int row = 1; row + 2 < grid.rows; ++row)
-    if (const double jump = jump_over(row, grid.columns, [&](int c, int r) { return heights.at(c, r); }); jump != 0) {
-      if (found.rows++ == 0) found.at = grid.y(row) + grid.cell / 2;
+  const auto look = [&](int across, int along, double first, std::size_t& lines, const auto& height) {
+    for (int at = 1; at + 2 < across; ++at) {
+      const double jump = jump_over(at, along, height);
+      if (jump == 0) continue;
+      if (sizes.empty()) found.at = first + (at + 0.5) * grid.cell;
+      ++lines;
       sizes.push_back(std::abs(jump));
     }
-  for (int column = 1; column + 2 < grid.columns; ++column)
-    if (const double jump = jump_over(column, grid.rows, [&](int r, int c) { return heights.at(c, r); }); jump != 0) {
-      if (found.columns++ == 0 && found.rows == 0) found.at = grid.x(column) + grid.cell / 2;
-      sizes.push_back(std::abs(jump));
-    }
+  };
+  look(grid.rows, grid.columns, grid.y(0), found.rows, [&](int c, int r) { return heights.at(c, r); });
+  look(grid.columns, grid.rows, grid.x(0), found.columns, [&](int r, int c) { return heights.at(c, r); });
   if (!sizes.empty()) found.size = median(sizes);
   return found;
 }
@@ -210,12 +220,15 @@ bool is_level(const std::vector<double>& before, const std::vector<double>& afte
          quantile(after, 0.5) - quantile(after, 0.05) <= resolved;
 }
 
-void warn_of_statistics(const Raster& heights, const std::filesystem::path& file) {
-  warn_of_steps(heights, file);
-  if (valid_heights(heights).size() < least_cells) return;
-  warn_of_noise(heights, file);
-  warn_of_level_piece(heights, file);
-  warn_of_straight_jumps(heights, file);
+void warn_of_statistics(std::vector<Raster> pieces, const std::filesystem::path& file) {
+  const auto first_of = [&](bool (*warns)(const Raster&, const std::filesystem::path&)) {
+    return std::ranges::any_of(pieces, [&](const Raster& piece) { return warns(piece, file); });
+  };
+  first_of(warn_of_steps);
+  std::erase_if(pieces, [](const Raster& piece) { return valid_heights(piece).size() < least_cells; });
+  warn_of_noise(pieces, file);
+  first_of(warn_of_level_piece);
+  first_of(warn_of_straight_jumps);
 }
 
 }  // namespace talus::preprocess

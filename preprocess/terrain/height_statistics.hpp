@@ -53,7 +53,8 @@ bool is_level(const std::vector<double>& before, const std::vector<double>& afte
 /// Warnings of heights [m] that may be no heights of ground, each with the causes that it cannot tell apart:
 /// "stepped-heights" (steps of 0.1 m and more), "noise-like-heights" (a ratio above 0.8, which is ground with H < 0.87
 /// without a slope), "level-ground" (a twentieth of the cells hold one value exactly, and a tenth of what lies around
-/// them is lower: no water lies so), "straight-jumps".
-void warn_of_statistics(const Raster& heights, const std::filesystem::path& file);
+/// them is lower: no water lies so), "straight-jumps". `pieces` of one model are judged one by one, the ratio by its
+/// median over them: water is as noisy as it is level.
+void warn_of_statistics(std::vector<Raster> pieces, const std::filesystem::path& file);
 
 }  // namespace talus::preprocess

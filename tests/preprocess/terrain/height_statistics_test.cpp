@@ -10,7 +10,10 @@
 #include <numbers>
 #include <random>
 
+#include "common/gis/geotiff.hpp"
 #include "common/stage/findings.hpp"
+#include "preprocess/terrain/elevation.hpp"
+#include "tests/common/scratch.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -32,7 +35,7 @@ double valley(double x, double y) {
 
 std::vector<std::string> doubts(const Raster& raster) {
   Findings found("preprocess", {}, Findings::Log::kept_back);
-  warn_of_statistics(raster, "model.tif");
+  warn_of_statistics({raster}, "model.tif");
   std::vector<std::string> names;
   for (const Finding& finding : found.list()) names.push_back(finding.name);
   return names;
@@ -122,6 +125,31 @@ TEST(HeightStatistics, doubt_jumps_over_straight_lines) {
            [](double x, double y) { return valley(x, y) + (x > 120 && x < 200 && y > 200 ? 8 : 0); },  // a dam
            [](double x, double) { return x < 200 ? 0.2 * x : 40 + 0.9 * (x - 200); }})  // a foot of a slope
     EXPECT_EQ(straight_jumps(heights_of(ground)).rows + straight_jumps(heights_of(ground)).columns, 0U);
+}
+
+// What is wrong in a corner of a large model is found there; a piece like noise in a model that is ground is none.
+TEST(HeightStatistics, are_those_of_pieces_all_over_a_model) {
+  const test::Scratch scratch;
+  const auto found_in = [&](const std::function<double(double, double)>& height) {
+    const MapGrid grid{.columns = 1300, .rows = 1100, .west = 5e5, .south = 5e6, .cell = cell, .crs_wkt = ""};
+    Raster model{grid, std::vector<double>(grid.count())};
+    each_cell(grid, [&](int c, int r) { model.at(c, r) = height(c * cell, r * cell); });
+    write_geotiff(scratch / "model.tif", model, {"z", "m", {}});
+    const Findings found("preprocess", {}, Findings::Log::kept_back);
+    read_elevation("before_dem", scratch / "model.tif", {});
+    Names names;
+    for (const Finding& finding : found.list()) names.push_back(finding.name);
+    return names;
+  };
+  EXPECT_EQ(found_in(valley), Names{});
+  EXPECT_EQ(found_in([](double x, double y) { return valley(x, y) + (x < 50 * cell ? 4 : 0); }),
+            Names{"straight-jumps"});
+  EXPECT_EQ(found_in([](double x, double y) { return x > 1100 * cell && y < 200 * cell ? 6000 : valley(x, y); }),
+            Names{"level-ground"});
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  EXPECT_EQ(found_in([&](double x, double y) { return valley(x, y) + (y < 500 * cell ? 20 * noise(random) : 0); }),
+            Names{});
 }
 
 }  // namespace
