@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "solver/scene/make_solver.hpp"
 
@@ -31,14 +30,6 @@ std::vector<double> times_of(const Inflow& inflow) {
   std::vector<double> times;
   for (const InflowPulse& pulse : inflow.pulses) times.push_back(pulse.time);
   return times;
-}
-
-/// The law of the bed with its numbers, and which of them rasters give instead.
-std::string bed_of(const RunEnd& end) {
-  std::vector<std::string> names;
-  for (const auto& [name, raster] : end.domain.bed) names.push_back(name);
-  const std::string law = end.options.base.sentence();
-  return names.empty() ? law : fmt::format("{} where no raster of {} says otherwise", law, fmt::join(names, " or "));
 }
 
 }  // namespace
@@ -215,7 +206,7 @@ void RunLoop::measure(const RunEnd& end, RunSummary& summary) const {
   const AnyDevice& device = stepper_.device();
   summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
   summary.material = options().material.sentence();
-  summary.bed = bed_of(end);
+  summary.bed = bed_sentence(end.domain, end.options);
   summary.precision = options().precision == Precision::double_ ? "double" : "single";
   summary.version = version();
   summary.particles = static_cast<std::int64_t>(scene().points.size() + scene().inflow.points_in(memory_.pulses));

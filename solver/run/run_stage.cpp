@@ -88,7 +88,7 @@ std::string profile_csv(const Profile& profile, double copy) {
 }
 
 void add_findings_of(const Plan& plan) {
-  add_findings(plan.domain->findings, "coarse-grid");
+  add_findings(plan.domain->findings);
   for (const Finding& finding : plan.findings) add_finding(finding);
 }
 

@@ -182,6 +182,13 @@ void each_bed(const Domain& domain, const SolveOptions& options,
   }
 }
 
+std::string bed_sentence(const Domain& domain, const SolveOptions& options) {
+  std::vector<std::string> names;
+  for (const auto& [name, raster] : domain.bed) names.push_back(name);
+  const std::string law = options.base.sentence();
+  return names.empty() ? law : fmt::format("{} where no raster of {} says otherwise", law, fmt::join(names, " or "));
+}
+
 SolveOptions with_map_threshold(SolveOptions options, const Domain& domain) {
   if (!options.map_threshold) options.map_threshold = covering_thickness(domain.release_thickness.values);
   return options;

@@ -47,6 +47,9 @@ GridShape grid_shape(const Domain& domain, const SolveOptions& options);
 void each_bed(const Domain& domain, const SolveOptions& options,
               const std::function<void(const BaseFriction<double>&)>& visit);
 
+/// The law of the bed with its numbers, and which of them the domain's rasters give instead.
+std::string bed_sentence(const Domain& domain, const SolveOptions& options);
+
 /// The positions of points in map coordinates [m].
 std::vector<std::array<double, 3>> positions(const Scene& scene, const ParticleState& points);
 

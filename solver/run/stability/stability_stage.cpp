@@ -50,8 +50,8 @@ void measure_columns(const Scene& scene, const Fails& fails, CriticalMass& mass)
 }
 
 /// What run.h5 says of a search beside its maps; `facts` are those of the outcome.
-RunSummary summary_of_search(const StageContext& context, const SolveOptions& options, const AnyDevice& device,
-                             const std::vector<Facts>& facts) {
+RunSummary summary_of_search(const StageContext& context, const Domain& domain, const SolveOptions& options,
+                             const AnyDevice& device, const std::vector<Facts>& facts) {
   RunSummary summary;
   summary.scene = context.recipe.scene_name();
   summary.title = context.recipe.title();
@@ -60,7 +60,7 @@ RunSummary summary_of_search(const StageContext& context, const SolveOptions& op
   summary.version = version();
   summary.stop_reason = "factor of safety by strength reduction";
   summary.material = options.material.sentence();
-  summary.bed = options.base.sentence();
+  summary.bed = bed_sentence(domain, options);
   for (const Facts& some : facts) summary.provenance.insert(summary.provenance.end(), some.begin(), some.end());
   return summary;
 }
@@ -199,7 +199,7 @@ Facts find_stability(StageContext& context, const SolveOptions& options, const A
       fmt::format("factor of safety: {} material points; tan(friction) and cohesion are divided until no "
                   "equilibrium is left",
                   search.scene().points.size()));
-  add_findings(domain.findings, "coarse-grid");
+  add_findings(domain.findings);
   if (context.check_only) return {};
   const RunTimer timer;
   const Stability found = search.run();
@@ -208,7 +208,7 @@ Facts find_stability(StageContext& context, const SolveOptions& options, const A
   warn_of_stability(found, mass);
   const Facts outcome = stability_facts(found, mass), id{{run_id, new_run_id()}};
   RunSummary summary =
-      summary_of_search(context, options, device, {domain.provenance, id, made_by(context, options), outcome});
+      summary_of_search(context, domain, options, device, {domain.provenance, id, made_by(context, options), outcome});
   summary.places = domain.obstacles;
   summary.findings = findings_so_far();
   summary.wall_time = timer.seconds();
