@@ -129,14 +129,11 @@ int run_one(const std::string& stage, const StageCall& call) {
   return report_faults(program.name, outcome);
 }
 
-/// Whether a person at a terminal reads the log.
-bool log_is_at_a_terminal() { return context().logs_to_stderr() && ::isatty(STDERR_FILENO) == 1; }
-
 /// While the object lives, a stage before the last tells a person at a terminal its progress and warnings alone.
 class BriefStage {
  public:
   explicit BriefStage(const std::string& stage) : before_(context().verbosity) {
-    if (stage != "postprocess" && before_ == Verbosity::normal && log_is_at_a_terminal())
+    if (stage != "postprocess" && before_ == Verbosity::normal && context().logs_to_terminal())
       context().verbosity = Verbosity::brief;
   }
   BriefStage(const BriefStage&) = delete;
@@ -215,7 +212,7 @@ int run_scene(const Request& request) {
     if (const int code = bring_up_to_date(request, stage); code != 0) return code;
   }
   if (request.plan) return print_plan(request);
-  if (!inner && !log_is_at_a_terminal())
+  if (!inner && !context().logs_to_terminal())
     log_info(fmt::format("{}: {}", recipe.scene_name(), page_in(request.out).string()));
   return 0;
 }

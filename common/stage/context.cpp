@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/ioctl.h>
@@ -43,10 +44,13 @@ spdlog::logger& stderr_logger() {
   return *instance;
 }
 
+std::string line_of(LogLevel level, const std::string& text) {
+  return (level == LogLevel::warning ? "warning: " : level == LogLevel::advice ? "advice: " : "") + text;
+}
+
 void write_to_stderr(LogLevel level, const std::string& text) {
   clear_progress_line();
-  const char* prefix = level == LogLevel::warning ? "warning: " : level == LogLevel::advice ? "advice: " : "";
-  stderr_logger().log(level == LogLevel::error ? spdlog::level::err : spdlog::level::info, prefix + text);
+  stderr_logger().log(level == LogLevel::error ? spdlog::level::err : spdlog::level::info, line_of(level, text));
 }
 
 void log_unless_kept_back(LogLevel level, const std::string& text) {
@@ -94,16 +98,37 @@ RedirectLog::~RedirectLog() { context_.redirect_ = std::move(previous_); }
 
 bool Context::is_interrupted() const { return interrupted_ || (heeds_signals_ && signal_came()); }
 
+bool Context::logs_to_terminal() const { return logs_to_stderr() && ::isatty(STDERR_FILENO) == 1; }
+
+void Context::start_record() {
+  const std::lock_guard lock(mutex_);
+  recorded_since_ = std::chrono::steady_clock::now();
+  record_.clear();
+}
+
+std::string Context::end_record() {
+  const std::lock_guard lock(mutex_);
+  recorded_since_.reset();
+  return std::exchange(record_, {});
+}
+
+bool Context::shows(LogLevel level) const {
+  if (level == LogLevel::detail && verbosity != Verbosity::verbose) return false;
+  if (redirect_) return true;
+  if (verbosity == Verbosity::quiet) return level == LogLevel::error;
+  return verbosity != Verbosity::brief || level != LogLevel::info;
+}
+
 void Context::log(LogLevel level, const std::string& text) {
-  if (level == LogLevel::detail && verbosity != Verbosity::verbose) return;
-  if (!redirect_ && verbosity == Verbosity::quiet && level != LogLevel::error) return;
-  if (!redirect_ && verbosity == Verbosity::brief && level == LogLevel::info) return;
   const std::string shown =
       without_control_characters(level == LogLevel::progress ? text : with_short_numbers(paths_->in_message(text)));
   const LogSink& sink = redirect_ ? redirect_ : sink_;
-  if (!sink) return write_to_stderr(level, shown);
+  if (!sink && shows(level)) write_to_stderr(level, shown);
   const std::lock_guard lock(mutex_);
-  sink(level, shown);
+  if (sink && shows(level)) sink(level, shown);
+  if (!recorded_since_ || level == LogLevel::progress) return;
+  const std::chrono::duration<double> since = std::chrono::steady_clock::now() - *recorded_since_;
+  record_ += fmt::format("{:8.1f} s  {}\n", since.count(), line_of(level, shown));
 }
 
 void Context::note_checksum(const std::filesystem::path& file, std::string digest) {
@@ -150,7 +175,7 @@ void clear_progress_line() {
 }
 
 Progress::Progress()
-    : terminal_(context().logs_to_stderr() && ::isatty(STDERR_FILENO) == 1),
+    : terminal_(context().logs_to_terminal()),
       quiet_(context().logs_to_stderr() && context().verbosity == Verbosity::quiet) {
   last_ = std::chrono::steady_clock::now();
 }

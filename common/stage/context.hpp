@@ -16,10 +16,12 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,8 +61,12 @@ class Context {
 
   /// Writes a line to the log, with paths as they are shown and without control characters.
   void log(LogLevel level, const std::string& text);
-  /// Whether lines go to stderr, where a terminal may be.
+  /// Whether lines go to stderr, where a terminal may be; whether one is.
   bool logs_to_stderr() const { return !redirect_ && !sink_; }
+  bool logs_to_terminal() const;
+  /// From now on keeps what log() gets but progress, whatever is shown, each line behind the time since [s].
+  void start_record();
+  std::string end_record();  ///< the lines since start_record()
 
   ShownPaths& paths() { return *paths_; }  ///< names of paths in the log and in the report
 
@@ -81,6 +87,7 @@ class Context {
     std::filesystem::path file;
     bool held;
   };
+  bool shows(LogLevel level) const;
 
   mutable std::mutex mutex_;
   LogSink sink_;      ///< empty: stderr
@@ -89,6 +96,8 @@ class Context {
   ShownPaths* paths_ = &own_paths_;
   std::vector<Lock> locks_;
   std::map<std::filesystem::path, std::string> checksums_;
+  std::optional<std::chrono::steady_clock::time_point> recorded_since_;
+  std::string record_;
   std::atomic<bool> interrupted_{false}, heeds_signals_{false};
 };
 

@@ -122,8 +122,6 @@ std::string host() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
 }
 
-std::string utc_now() { return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))); }
-
 std::string content(int descriptor) {
   std::array<char, 512> text{};
   const ssize_t length = ::pread(descriptor, text.data(), text.size() - 1, 0);
@@ -204,6 +202,8 @@ void write_holder(const fs::path& file, int descriptor, const std::string& progr
 }
 
 }  // namespace
+
+std::string utc_now() { return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr))); }
 
 void require_plain(const fs::path& file) {
   std::error_code unknown;

@@ -80,6 +80,9 @@ std::filesystem::path lock_file_of(const std::filesystem::path& folder, const st
 /// True while the calling thread's context holds a lock: partial files in its folder are then of killed processes.
 bool holds_output_lock();
 
+/// "2026-11-28 16:01:00 UTC".
+std::string utc_now();
+
 /// A word for this process that no other has, for names of partial files: "1234-9f3c21ab".
 const std::string& process_word();
 

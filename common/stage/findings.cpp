@@ -72,8 +72,7 @@ void Findings::settle() {
   if (!refused_.empty()) throw DataError(std::exchange(refused_, {}));
 }
 
-void Findings::keep(const Finding& finding, bool logged) {
-  if (logged && !log_is_kept_back()) log_finding(finding);
+void Findings::keep(const Finding& finding) {
   for (Findings* list = innermost; list != nullptr; list = list->passes_on_ ? list->outer_ : nullptr)
     list->list_.push_back(finding);
 }
@@ -82,11 +81,12 @@ void add_finding(Finding finding) {
   finding.message = with_short_numbers(as_utf8(with_shown_paths(finding.message)));
   if (finding.stage.empty() && innermost != nullptr) finding.stage = innermost->stage_;
   if (innermost != nullptr && std::ranges::find(innermost->list_, finding) != innermost->list_.end()) return;
-  Findings::keep(finding, true);
+  if (!log_is_kept_back()) log_finding(finding);
+  Findings::keep(finding);
 }
 
-void add_findings(const std::vector<Finding>& findings, const std::string& repeated) {
-  for (const Finding& finding : findings) Findings::keep(finding, finding.name == repeated);
+void add_findings(const std::vector<Finding>& findings) {
+  for (const Finding& finding : findings) Findings::keep(finding);
 }
 
 void advise(std::string name, std::string message, std::vector<FindingNumber> numbers) {

@@ -65,12 +65,12 @@ class Findings {
 
  private:
   friend void add_finding(Finding finding);
-  friend void add_findings(const std::vector<Finding>& findings, const std::string& repeated);
+  friend void add_findings(const std::vector<Finding>& findings);
   friend void refuse_unless_accepted(const std::string&, const Fault&, std::vector<FindingNumber>);
   friend std::vector<Finding> findings_so_far();
   friend bool log_is_kept_back();
 
-  static void keep(const Finding& finding, bool logged);  ///< adds to the lists of the thread
+  static void keep(const Finding& finding);  ///< adds to the lists of the thread
 
   std::string stage_;
   std::vector<std::string> accept_;
@@ -82,8 +82,8 @@ class Findings {
 
 /// Adds a finding to the lists of the thread and logs it. Of a finding without a stage the innermost list gives it.
 void add_finding(Finding finding);
-/// Adds findings of a stage before. Of these the log has those of the name `repeated` alone.
-void add_findings(const std::vector<Finding>& findings, const std::string& repeated = "");
+/// Adds findings of a stage before, which has logged them.
+void add_findings(const std::vector<Finding>& findings);
 /// Adds advice.
 void advise(std::string name, std::string message, std::vector<FindingNumber> numbers = {});
 /// Adds a warning.

@@ -63,9 +63,8 @@ std::string checksum_of(const fs::path& file) {
   return fs::is_regular_file(file, unknown) ? sha256(file) : "";
 }
 
-/// "OUT/solve.used.toml", of a part "OUT/solve.0-250.used.toml".
 fs::path used_recipe_file(const Stage& stage, const StageContext& context) {
-  return context.out / (stage.table + (context.part.empty() ? "" : "." + context.part) + ".used.toml");
+  return file_of(stage, context, ".used.toml");
 }
 
 /// The line of a used recipe for a fact, "# name: value"; a value with line breaks stays in its comment.
@@ -351,6 +350,10 @@ std::string used_recipe(const StageContext& context, const Stage& stage, const s
   if (!names(facts, "hardware")) text += fact_line("hardware", hardware());
   for (const auto& [name, value] : facts) text += fact_line(name, value);
   return text + "\n" + own_recipe(context.recipe, options_toml);
+}
+
+fs::path file_of(const Stage& stage, const StageContext& context, const std::string& ending) {
+  return context.out / (stage.table + (context.part.empty() ? "" : "." + context.part) + ending);
 }
 
 void write_used_recipe(StageContext& context, const Stage& stage, const std::string& options_toml,

@@ -245,6 +245,26 @@ std::optional<std::vector<fs::path>> fresh_results(const Stage& stage, const Sta
   return std::move(verdict.results);
 }
 
+void write_log(const Stage& stage, const StageContext& context, const std::string& said) {
+  write_text(file_of(stage, context, ".log"),
+             fmt::format("{}, {}: {}\n{}\n", version(), utc_now(), context.command_line, said));
+}
+
+/// Runs the stage, and writes all that it said into OUT/STAGE.log, of a part OUT/STAGE.PART.log: where it is done, and
+/// where the computation failed or was stopped. A refusal leaves the log of the results that are there.
+void run_logged(const Stage& stage, StageContext& opened, Findings& found) {
+  context().start_record();
+  try {
+    found.settled([&] { stage.run(opened); });
+  } catch (const Error& error) {
+    const std::string said = context().end_record();
+    if (error.code() != ExitCode::numerical && error.code() != ExitCode::interrupted) throw;
+    write_log(stage, opened, said + error.what());
+    throw;
+  }
+  write_log(stage, opened, context().end_record());
+}
+
 std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
   StageContext opened = open_call(stage, call);
   Findings found(stage.table);
@@ -261,7 +281,7 @@ std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
     if (auto results = fresh_results(stage, opened)) return *results;
   check_names_of_results(stage, opened);
   opened.made_of = ingredients_before(stage, opened);
-  found.settled([&] { stage.run(opened); });
+  run_logged(stage, opened, found);
   if (has_made_results(stage, opened)) note_results(stage, opened);
   return opened.results;
 }

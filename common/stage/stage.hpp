@@ -171,6 +171,9 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 std::string sha256(const std::filesystem::path& path);
 std::string sha256_of_text(const std::string& text);
 
+/// "OUT/solve.used.toml" for ".used.toml", of a part "OUT/solve.0-250.used.toml".
+std::filesystem::path file_of(const Stage& stage, const StageContext& context, const std::string& ending);
+
 /// The text of `<stage>.used.toml`: the options with defaults filled in (recipe::to_used_toml marks those that were
 /// changed), and above them as comments version, command, context.made_of and further inputs with their checksums, CRS,
 /// hardware, wall time (pairs of `facts`).

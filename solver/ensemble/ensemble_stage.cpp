@@ -242,7 +242,7 @@ Facts run_ensemble(StageContext& context, const EnsembleFlags& flags, const std:
     context.results.push_back(e.counts);
     return {{"wall_time_s", seconds()}, {"members", std::to_string(e.part.count())}};
   }
-  add_findings(domain.findings, "coarse-grid");
+  add_findings(domain.findings);
   const Members members(context.recipe, e.table, e.paths, base_domain, base);
   members.check();
   const std::vector<AnyDevice> each = one_of_each(flags.on);

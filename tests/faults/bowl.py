@@ -199,6 +199,12 @@ def of_table(file):
     return repr([[row[place] for place in kept if place < len(row)] for row in rows])
 
 
+def of_log(file):
+    if not file.read_text().endswith("\n"):
+        raise ValueError("ends within a line")
+    return "whole"
+
+
 def of_page(file):
     if not file.read_text().rstrip().endswith("</html>"):
         raise ValueError("ends within the page")
@@ -211,7 +217,7 @@ def of_project(file):
 
 READERS = {".h5": of_hdf5, ".nc": of_hdf5, ".tif": of_raster, ".gpkg": of_geopackage, ".vdb": of_openvdb,
            ".json": of_json, ".html": of_page, ".toml": of_text, ".txt": of_text, ".csv": of_table,
-           ".qgs": of_project}
+           ".log": of_log, ".qgs": of_project}
 
 
 def digest(file):

@@ -120,6 +120,22 @@ test_quiet_says_nothing() {
   [[ ! -s stderr ]] || fail "-q talks"
 }
 
+# STAGE.log has what a stage said and details, whatever the terminal was shown; a refused call leaves the old one.
+test_log_in_the_results() {
+  scene
+  expect_exit 0 preprocess
+  expect_exit 0 solve -q
+  expect_exit 0 postprocess
+  local stage
+  for stage in preprocess solve postprocess; do
+    head -n 1 out/$stage.log | grep -q ' UTC: .*talus-'$stage' recipe.toml' || fail "$stage.log names no command"
+    grep -qE '^ +[0-9]+\.[0-9] s  [^ ]' out/$stage.log || fail "$stage.log says nothing: $(<out/$stage.log)"
+  done
+  cp out/solve.log before
+  expect_exit 2 solve --set solve.cfl=-1
+  cmp before out/solve.log || fail "a refused call wrote a log"
+}
+
 # Every used recipe runs again and gives the same result.
 test_used_recipes_are_recipes() {
   scene

@@ -22,6 +22,7 @@ test_solve_leaves_a_checkpoint() {
   interrupt INT 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
   [[ -s out/checkpoint.h5 ]] || fail "no checkpoint was left"
   expect_words "(interrupted). Go on with --restart; out/checkpoint.h5 holds the state"
+  grep -q 'stopped at t' out/solve.log || fail "the log does not say that it was stopped: $(<out/solve.log)"
   grep -qE '^talus-solve: stopped at t = [0-9.]+ s, step [1-9][0-9]* ' stderr || fail "it does not say where it stopped"
   nothing_looks_finished
 }

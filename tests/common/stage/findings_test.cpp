@@ -63,14 +63,14 @@ TEST(Findings, go_from_the_innermost_list_to_the_first_that_keeps_them_back) {
   EXPECT_EQ(stage.list()[1].stage, "solve");
 }
 
-TEST(Findings, of_a_stage_before_are_added_as_they_are_and_one_of_them_said) {
+TEST(Findings, of_a_stage_before_are_added_as_they_are_and_not_said_again) {
   const std::vector<Finding> before{
       test::finding(Severity::advice, "a", "advice"), test::finding(Severity::warning, "b", "coarse"),
       test::finding(Severity::warning, "d", "said before"), test::finding(Severity::refusal, "c", "accepted before")};
   testing::internal::CaptureStderr();
   const Findings stage("solve");
-  add_findings(before, "b");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "warning: coarse\n");
+  add_findings(before);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(stage.list(), before);
 }
 
@@ -159,6 +159,21 @@ TEST(Context, kinds_of_lines_come_as_data_without_prefixes_and_a_redirected_log_
   EXPECT_EQ(inner, std::vector<std::string>{"inside"});
   ASSERT_EQ(kept.lines.size(), 4u);
   EXPECT_EQ(kept.lines.back().second, "outside");
+}
+
+TEST(Context, a_record_has_all_that_is_logged_but_progress_whatever_is_shown) {
+  Kept kept;
+  const BindContext bind(kept.own);
+  kept.own.verbosity = Verbosity::quiet;
+  log_warning("before");
+  kept.own.start_record();
+  log_detail("detail");
+  log_warning("careful\x1b");
+  kept.own.log(LogLevel::progress, "half");
+  EXPECT_EQ(kept.own.end_record(), "     0.0 s  detail\n     0.0 s  warning: careful?\n");
+  EXPECT_TRUE(kept.lines.empty()) << "quiet";
+  log_warning("after");
+  EXPECT_EQ(kept.own.end_record(), "");
 }
 
 TEST(Context, threads_that_share_work_inherit_it_and_an_interruption_stops_its_own_work_alone) {
