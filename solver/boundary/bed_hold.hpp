@@ -49,10 +49,46 @@ TALUS_HD bool hops_low(const GridView<Real>& grid, int i, int j, const Vec3<Real
   return true;
 }
 
-/// One thread: one column. It holds what lies on the bed and would leave it for a low hop, since the ground bends away
+/// What a column is held by in a step.
+template <class Real>
+struct HoldStep {
+  Vec3<Real> gravity;  ///< [m/s2]
+  Real length;         ///< [s]
+  Clock* clock;
+};
+
+/// This function holds what lies on the bed of a column and would leave it for a low hop, since the ground bends away
 /// below it faster than its weight bends its way (T12c), once the nodes have met bed and walls: the base node keeps no
 /// velocity away from the ground, and the nodes above lose what the column leaves by as a whole. It touches no velocity
-/// along the bed: what pulls gives no friction.
+/// along the bed: what pulls gives no friction. `density` [kg/m3] is that of the mass, for its depth; `rise`: see
+/// BedColumns, null where nobody asks.
+template <class Real, class Nodes>
+TALUS_HD void hold_column(const GridView<Real>& grid, const Nodes& nodes, const ColumnNodes& at,
+                          const HoldStep<Real>& step, const Walls<Real>& walls, Real density, Real* rise) {
+  const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
+  if (!(matter.mass > Real(0))) return;
+  const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
+  const Vec3<Real> base = nodes.velocity(at.node(matter.first)), normal = normal_of(sx, sy),
+                   mean = matter.momentum * (Real(1) / matter.mass);
+  const Real turn = turn_of_ground(grid, at.i, at.j, mean, step.length), leaves = rise_from(base, sx, sy) - turn;
+  if (!(leaves > Real(0)) || !(Real(-2) * turn > -dot(step.gravity, normal) * step.length)) return;
+  const Real area = Real(grid.spacing * grid.spacing * sqrt(Real(1) + sx * sx + sy * sy));
+  if (!hops_low(grid, at.i, at.j, base, step.gravity, matter.mass / (density * area))) return;
+  const Real whole = rise_from(mean, sx, sy) - turn,
+             lift = whole < leaves ? (whole > Real(0) ? whole : Real(0)) : leaves;
+  EnergyBudget& budget = step.clock->budget;
+  for (int k = matter.first; k < matter.last; ++k) {
+    const int n = at.node(k);
+    const Vec3<Real> before = nodes.velocity(n);
+    Vec3<Real> after = before - normal * (k == matter.first ? leaves : lift);
+    if (walls.count > 0) after = meet_walls(walls, at.i, at.j, k, after, false);  // it stays before those it has met
+    nodes.add(n, after - before);
+    if (budget.is_kept) count_at_bed(*step.clock, budget.holding_loss, nodes.mass(n), before, after - before);
+  }
+  if (rise) rise[at.column] = Real(0);
+}
+
+/// One thread: one column. It holds the column, where the kernel that its nodes have met bed and walls in does not.
 template <class Real, class Nodes>
 struct HoldColumns {
   GridView<Real> grid;
@@ -61,38 +97,15 @@ struct HoldColumns {
   ColumnStep step;  ///< with a clock
   Walls<Real> walls;
   Real density;  ///< of the mass [kg/m3]
-  Real* rise;    ///< see BedColumns; null where nobody asks
+  Real* rise;    ///< see hold_column()
 
   TALUS_HD void operator()(int c) const {
     if (step.clock->alarms.halt != running) return;
     const ColumnNodes at = ColumnNodes::find(grid, active, c);
     if (!at.in_domain()) return;
-    const LyingMatter<Real> matter = matter_on_bed(grid, nodes, at);
-    if (!(matter.mass > Real(0))) return;
-    const Real sx = grid.slope_x[at.column], sy = grid.slope_y[at.column];
-    const Vec3<Real> base = nodes.velocity(at.node(matter.first)), normal = normal_of(sx, sy),
-                     mean = matter.momentum * (Real(1) / matter.mass), g = narrow<Real>(step.gravity.at(*step.clock));
-    const Real dt = static_cast<Real>(step.length()), turn = turn_of_ground(grid, at.i, at.j, mean, dt),
-               leaves = rise_from(base, sx, sy) - turn;
-    if (!(leaves > Real(0)) || !(Real(-2) * turn > -dot(g, normal) * dt)) return;
-    const Real area = Real(grid.spacing * grid.spacing * sqrt(Real(1) + sx * sx + sy * sy));
-    if (!hops_low(grid, at.i, at.j, base, g, matter.mass / (density * area))) return;
-    const Real whole = rise_from(mean, sx, sy) - turn,
-               lift = whole < leaves ? (whole > Real(0) ? whole : Real(0)) : leaves;
-    for (int k = matter.first; k < matter.last; ++k) take(at, k, normal * (k == matter.first ? leaves : lift));
-    if (rise) rise[at.column] = Real(0);
-  }
-
- private:
-  /// The method takes a velocity [m/s] off the node in layer k, which stays before the walls that it has met.
-  TALUS_HD void take(const ColumnNodes& at, int k, const Vec3<Real>& velocity) const {
-    Clock& clock = *step.clock;
-    const int n = at.node(k);
-    const Vec3<Real> before = nodes.velocity(n);
-    Vec3<Real> after = before - velocity;
-    if (walls.count > 0) after = meet_walls(walls, at.i, at.j, k, after, false);
-    nodes.add(n, after - before);
-    if (clock.budget.is_kept) count_at_bed(clock, clock.budget.holding_loss, nodes.mass(n), before, after - before);
+    hold_column(grid, nodes, at,
+                {narrow<Real>(step.gravity.at(*step.clock)), static_cast<Real>(step.length()), step.clock}, walls,
+                density, rise);
   }
 };
 

@@ -13,14 +13,14 @@ namespace talus::solver {
 
 /// The integrator of steps whose inertia is implicit along the columns of the grid (T6a).
 template <class Real, class Device, class Shape>
-class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape> {
-  using Base = BatchSolver<Real, Device, Shape>;
+class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape, false> {
+  using Base = BatchSolver<Real, Device, Shape, false>;
   using Base::clock_, Base::device_, Base::forces_, Base::grid_, Base::nodes_, Base::settings_;
 
  public:
   ColumnImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
                        const SolverState& state)
-      : Base(device, scene, settings, state, false), softer_(softer(scene, settings)) {
+      : Base(device, scene, settings, state), softer_(softer(scene, settings)) {
     this->start(state);
   }
 
@@ -48,8 +48,8 @@ class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape> {
   template <bool counts>
   void solve_columns() {
     for_each(device_, grid_.active_blocks() * block_columns,
-             SolveColumns<Real, counts>{this->boundary(), nodes_.data(), forces_.data(), mobilities_.data(),
-                                        static_cast<Real>(settings_.damping), kappa(), softer_});
+             SolveColumns<Real, counts>{this->boundary(forces_.data()), nodes_.data(), forces_.data(),
+                                        mobilities_.data(), static_cast<Real>(settings_.damping), kappa(), softer_});
   }
 
   Real kappa() const { return static_cast<Real>(settings_.kappa); }

@@ -98,13 +98,13 @@ struct UpdateColumns {
 namespace talus::solver {
 
 template <class Real, class Device, class Shape>
-class ExplicitSolver final : public BatchSolver<Real, Device, Shape> {
-  using Base = BatchSolver<Real, Device, Shape>;
+class ExplicitSolver final : public BatchSolver<Real, Device, Shape, true> {
+  using Base = BatchSolver<Real, Device, Shape, true>;
   using Base::device_, Base::forces_, Base::grid_, Base::nodes_, Base::settings_;
 
  public:
   ExplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
-      : Base(device, scene, settings, state, true) {
+      : Base(device, scene, settings, state) {
     this->start(state);
   }
 
@@ -132,9 +132,11 @@ class ExplicitSolver final : public BatchSolver<Real, Device, Shape> {
 
   template <NodeContent content, bool counts>
   void update_nodes() {
-    for_each_column<block_columns>(device_, grid_.active_blocks(),
-                                   UpdateColumns<Real, content, counts>{this->boundary(), nodes_.data(), forces_.data(),
-                                                                        static_cast<Real>(settings_.damping)});
+    Vec4<Real>* const changes = content == NodeContent::force ? forces_.data() : nullptr;
+    for_each_column<block_columns>(
+        device_, grid_.active_blocks(),
+        UpdateColumns<Real, content, counts>{this->boundary(changes), nodes_.data(), forces_.data(),
+                                             static_cast<Real>(settings_.damping)});
   }
 };
 

@@ -43,8 +43,8 @@ Drift drift_between_sorts(bool deterministic) {
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
 /// An integrator whose steps are bounded by the CFL condition: clear, scatter, update, gather. Derived classes scatter
-/// and update the nodes; their constructors end with start().
-template <class Real, class Device, class Shape>
+/// and update the nodes; their constructors end with start(). `by_layers`: waves across the layers bound the step.
+template <class Real, class Device, class Shape, bool by_layers>
 class BatchSolver : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
 
@@ -53,13 +53,10 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
       Base::motion_, Base::points_, Base::settings_, Base::shaking_, Base::surroundings_;
 
  public:
-  /// The constructor takes whether waves across the layers bound the step; see PointSolver for the rest.
-  BatchSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state,
-              bool bound_by_layers)
+  BatchSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
       : Base(device, scene, settings, state, needs(settings), drift_between_sorts<Device>(settings.deterministic)),
         recording_(device),
-        bound_by_layers_(bound_by_layers),
-        columns_(device, surroundings_.bed(), settings, static_cast<double>(materials_.list[0].density), scene.grid) {}
+        columns_(device, surroundings_.bed(), settings, scene.grid) {}
 
   /// The method makes a batch of steps on the device, or one step on a CPU; see Solver::advance().
   BatchReport advance() override {
@@ -177,14 +174,17 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
       const ProfilePhase<Device> phase(device_, "grid");
       update_nodes();
     }
-    if (settings_.energy_budget) columns_.count_landing(at);
-    columns_.hold(at, walls_, true);
+    if (settings_.energy_budget) {  // else ColumnBoundary::finish() holds them
+      columns_.count_landing(at);
+      columns_.hold(at, walls_, this->column_density().uniform, true);
+    }
     meet_surfaces(at, inertia, true);
     columns_.slow(at, surroundings_.bed(), this->column_density());
   }
 
-  /// The surroundings of the columns as the nodes' kernels see them.
-  ColumnBoundary<Real> boundary() {
+  /// The surroundings of the columns as the nodes' kernels see them, which hold columns where they count no losses;
+  /// `changes` as for update().
+  ColumnBoundary<Real> boundary(Vec4<Real>* changes) {
     const Vec3<double> full = settings_.gravity_vector();
     return {.grid = grid_.view(),
             .active = grid_.active_list(),
@@ -198,7 +198,9 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
             .pressed = columns_.pressed(),
             .density = this->column_density(),
             .maps = maps_.view(),
-            .motion = motion_.sums()};
+            .motion = motion_.sums(),
+            .nodes = {nodes_.data(), changes},
+            .holds = !settings_.energy_budget && grid_.view().mapping == Mapping::terrain_following};
   }
 
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
@@ -262,14 +264,14 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   /// The method makes velocities of the points' new momentum.
   void remap() {
     const StepNodes<Real> at = step_nodes(nullptr);
-    ColumnBoundary<Real> around = boundary();
+    ColumnBoundary<Real> around = boundary(nullptr);
     if (!around.friction.holds()) around.friction.law = FrictionLaw::none;
     around.columns = {};
     {
       const ProfilePhase<Device> phase(device_, "grid");
       for_each_column<block_columns>(device_, at.blocks, RemapColumns<Real>{around, nodes_.data()});
     }
-    columns_.hold(at, walls_, false);
+    columns_.hold(at, walls_, this->column_density().uniform, false);
     meet_surfaces(at, NodeInertia<Device>(device_), false);
   }
 
@@ -297,9 +299,9 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     const Vec4<Real>* const changes = settings_.decay_time > 0 ? forces_.data() : nullptr;
     const auto run = [&]<bool budget, class Laws>(const Materials<Real, Laws>& materials) {
       for_each(device_, points_.count(),
-               GridToParticle<Real, Shape, part, budget, Laws>{grid_.view(), points_.view(), materials, clock_.data(),
-                                                               nodes_.data(), changes, grid_.home(), settings_.affine(),
-                                                               dilatant_, bound_by_layers_});
+               GridToParticle<Real, Shape, part, budget, by_layers, Laws>{grid_.view(), points_.view(), materials,
+                                                                          clock_.data(), nodes_.data(), changes,
+                                                                          grid_.home(), settings_.affine(), dilatant_});
     };
     if (settings_.energy_budget) {
       run.template operator()<true>(materials_);
@@ -320,7 +322,6 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
 
   Recording<Device> recording_;  ///< of a step
   int expected_ = 32;            ///< steps between sorts
-  bool bound_by_layers_;
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   ColumnContact<Real, Device> columns_;

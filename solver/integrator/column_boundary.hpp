@@ -6,7 +6,9 @@
 
 #include <type_traits>
 
+#include "solver/boundary/bed_hold.hpp"
 #include "solver/boundary/column_traction.hpp"
+#include "solver/boundary/contact_impulses.hpp"
 #include "solver/boundary/walls.hpp"
 
 namespace talus {
@@ -147,6 +149,8 @@ struct ColumnBoundary {
   ColumnDensity<Real> density;  ///< of the mass
   MapView maps;
   Vec4<Real>* motion;  ///< see record_motion()
+  solver::PackedNodes<Real> nodes = {};
+  bool holds = false;  ///< finish() holds columns that would leave the ground for a low hop (T12c)
 
   /// Column number c of the active blocks; not inside where it is out of the domain or the batch has halted.
   TALUS_HD SteppedColumn<Real> locate(int c) const {
@@ -171,7 +175,8 @@ struct ColumnBoundary {
     v.after = walls.count > 0 ? meet_walls(walls, at.i, at.j, k, v.met, with_friction) : v.met;
   }
 
-  /// The method keeps mass [kg] and losses of a whole column, and records thickness, arrival and motion (T25).
+  /// The method keeps mass [kg] and losses of a whole column whose nodes have met bed and walls, holds it where it
+  /// would hop, and records thickness, arrival and motion (T25).
   template <class Losses>
   TALUS_HD void finish(const SteppedColumn<Real>& at, Real mass, const Losses& losses) const {
     record_motion(maps, at.column, *clock, motion, density, grid.spacing);
@@ -179,6 +184,7 @@ struct ColumnBoundary {
     if constexpr (Losses::counted) pressed[at.column] = static_cast<Real>(losses.pressed);
     if (!(mass > Real(0))) return;
     if constexpr (Losses::counted) losses.add_to(*clock);
+    if (holds) hold_column(grid, nodes, at, {gravity.at(*clock), at.dt, clock}, walls, density.uniform, columns.rise);
     const double m = static_cast<double>(mass);
     record_column(maps, at.column, {m, density.of(at.column, m), static_cast<double>(grid.spacing)}, clock->time);
   }

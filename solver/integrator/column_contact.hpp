@@ -19,13 +19,10 @@ using StepNodes = StepColumns<Real, PackedNodes<Real>>;
 template <class Real, class Device>
 class ColumnContact {
  public:
-  /// The constructor takes the bed's friction, what the recipe asks for, the density of the mass [kg/m3] and the grid.
-  ColumnContact(const Device& device, const BaseFriction<Real>& bed, const IntegratorSettings& settings, double density,
+  /// The constructor takes the bed's friction, what the recipe asks for, and the grid.
+  ColumnContact(const Device& device, const BaseFriction<Real>& bed, const IntegratorSettings& settings,
                 const GridShape& grid)
-      : device_(device),
-        traction_(device, bed, grid.columns, grid.rows),
-        density_(static_cast<Real>(density)),
-        pressed_(device) {
+      : device_(device), traction_(device, bed, grid.columns, grid.rows), pressed_(device) {
     if (settings.energy_budget)
       pressed_.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
   }
@@ -59,7 +56,7 @@ class ColumnContact {
 
   /// The method holds columns on the ground that would leave it for a low hop (T12c), where the grid follows the
   /// ground. The `first` of the updates that a step makes tells tractions of it.
-  void hold(const StepNodes<Real>& at, const Walls<Real>& walls, bool first) {
+  void hold(const StepNodes<Real>& at, const Walls<Real>& walls, Real density, bool first) {
     if (at.grid.mapping != Mapping::terrain_following) return;
     const ProfilePhase<Device> phase(device_, "grid");
     for_each(device_, at.count(),
@@ -68,7 +65,7 @@ class ColumnContact {
                                                   .nodes = at.nodes,
                                                   .step = at.step,
                                                   .walls = walls,
-                                                  .density = density_,
+                                                  .density = density,
                                                   .rise = first ? traction_.slowed().rise : nullptr});
   }
 
@@ -85,7 +82,6 @@ class ColumnContact {
  private:
   Device device_;
   ColumnTraction<Real, Device> traction_;
-  Real density_;                  ///< of the mass [kg/m3]
   Buffer<Real, Device> pressed_;  ///< impulse of the bed on every column [N s]; with a budget
 };
 

@@ -58,8 +58,9 @@ enum class Gather {
 
 /// The gather of velocity (T7, T8), velocity gradient (T9) and way (T10) of the points. One thread: one point. nodes[]
 /// holds mass and new velocity; changes[] the velocity change of the step, null where points keep nothing of their own
-/// velocity. `budget`: adds up what is lost (T24), for the clock.
-template <class Real, class Shape, Gather part, bool budget, class Laws = MaterialLaws>
+/// velocity. `budget`: adds up what is lost (T24), for the clock. `by_layers`: waves across the layers bound the step,
+/// as they do where columns are not implicit.
+template <class Real, class Shape, Gather part, bool budget, bool by_layers = true, class Laws = MaterialLaws>
 struct GridToParticle {
   static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  ///< see run_dense
   GridView<Real> grid;
@@ -71,7 +72,6 @@ struct GridToParticle {
   const std::uint64_t* home;  ///< key of the cell the point was sorted by (see home_key())
   bool affine;
   bool dilatant;
-  bool bound_by_layers = true;  ///< waves across the layers bound the step: not where columns are implicit
 
   /// The memory that the kernel moves for that many points [bytes].
   double bytes(int count) const {
@@ -113,7 +113,7 @@ struct GridToParticle {
   TALUS_HD Sums gather(const Stencil<Real, Shape>& s) const {
     // A CPU tests flags at each of the nodes; the usual ones have a copy of the loop without.
     if constexpr (TALUS_ON_CPU == 1) {
-      if (affine && bound_by_layers && changes && grid.mapping == Mapping::terrain_following) return sum_up<true>(s);
+      if (affine && by_layers && changes && grid.mapping == Mapping::terrain_following) return sum_up<true>(s);
     }
     return sum_up<false>(s);
   }
@@ -122,7 +122,7 @@ struct GridToParticle {
   TALUS_HD Sums sum_up(const Stencil<Real, Shape>& s) const {
     Sums sums;
     const bool follows = usual || grid.mapping == Mapping::terrain_following, with_affine = usual || affine,
-               by_layers = usual || bound_by_layers, has_changes = usual || changes;
+               has_changes = usual || changes;
     TALUS_UNROLL  // weights looked up by a loop's counter would go through memory
         for (int b = 0; b < Shape::width; ++b) {
       TALUS_UNROLL
@@ -145,14 +145,14 @@ struct GridToParticle {
           mean += v * s.wz[c];
           rise += v * s.gz[c];
           if (with_affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
-          if (!by_layers) mass += node.w * s.wz[c];
+          if constexpr (!by_layers) mass += node.w * s.wz[c];
           if (has_changes) {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
           }
         }
         const Real w = s.wx[a] * s.wy[b];
-        if (!by_layers) sums.company.add(mass, s.wx[a], s.wy[b]);
+        if constexpr (!by_layers) sums.company.add(mass, s.wx[a], s.wy[b]);
         sums.velocity += mean * w;
         sums.change += change * w;
         sums.climb += (mean.z - nx * mean.x - ny * mean.y) * w;
@@ -235,8 +235,8 @@ struct GridToParticle {
     else
       state = advance_in_pieces(material, g, pieces, dt, state);
     const Real waves = wave_speed(material, state);
-    if (!bound_by_layers && !material.holds_tension()) {
-      const Real kept = share_kept_alone(sums.company.alone(s), waves * across);
+    if constexpr (!by_layers) {
+      const Real kept = material.holds_tension() ? Real(1) : share_kept_alone(sums.company.alone(s), waves * across);
       if (kept < Real(1)) forget_stress(material, kept, state);
     }
     if constexpr (budget) lose_to_flow(material, before, state, g, points.volume[p]);
@@ -282,7 +282,7 @@ struct GridToParticle {
     }
     const Real steep = Real(1) + s.slope_x * s.slope_x + s.slope_y * s.slope_y;
     const Real hx = Real(1) / grid.spacing, hz = Real(1) / grid.layer_height;
-    const Real waves = Real(wave_speed * sqrt(Real(2) * hx * hx + (bound_by_layers ? steep * hz * hz : Real(0))));
+    const Real waves = Real(wave_speed * sqrt(Real(2) * hx * hx + (by_layers ? steep * hz * hz : Real(0))));
     const Real flow = Real(fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz);
     atomic_max_positive(&clock->control.rate_bits, static_cast<float>(waves + flow));
     atomic_max_positive(&clock->control.speed_bits, static_cast<float>(speed));

@@ -61,11 +61,9 @@ TYPED_TEST(Weights, beside_an_edge_end_on_its_node) {
           EXPECT_TRUE(w[a] == 0 || inward * (first + a) >= 0) << "weight behind the edge";
         }
       }
-      const double expected = TypeParam::averaged ? std::max(away, half)
-                              : TypeParam::spline ? std::max(away, lowest)
-                                                  : away;
+      const double expected = TypeParam::averaged ? std::max(away, half) : std::max(away, lowest);
       EXPECT_NEAR(one, 1, 1e-15);
-      EXPECT_NEAR(stands_for, inward * expected, 1e-15);
+      EXPECT_NEAR(away > 0 ? inward * stands_for : std::abs(stands_for), expected, 1e-15);
       EXPECT_NEAR(position, stands_for, 1e-15);
       EXPECT_NEAR(slope, 1, 1e-15);
     }

@@ -73,6 +73,10 @@ class Transfers : public InEachPlace {
                    ShapeKind of)
         : s(scene), p(point), shape(of) {
       for (int a = 0; a < 3; ++a) x[a] = s.points.cell[a][p] + s.points.offset[a][p];
+      if (shape == ShapeKind::linear)  // weights stop changing a tenth of a cell from every node
+        for (double& place : x)
+          place = std::floor(place) +
+                  std::clamp(place - std::floor(place), s.grid.lowest_weighed, 1 - s.grid.lowest_weighed);
       for (int i = s.points.cell[0][p] - 1; i <= s.points.cell[0][p] + 1; ++i) {
         for (int j = s.points.cell[1][p] - 1; j <= s.points.cell[1][p] + 1; ++j) {
           const double z = tables.terrain[s.grid.index(i, j)] / s.grid.spacing;
@@ -259,7 +263,10 @@ class Transfers : public InEachPlace {
     int checked = 0;
     for (std::size_t p = 0; p < got.size(); ++p) {
       const double nearest = Shape::averaged ? 0.5 * got.extent[2][p] : s.grid.lowest_weighed;
-      if (got.cell[2][p] == 0 && got.offset[2][p] < nearest) continue;
+      const auto beside_node = [&](int a) { return std::abs(got.offset[a][p]) < s.grid.lowest_weighed; };
+      if (Shape::width == 2 ? beside_node(0) || beside_node(1) || beside_node(2)
+                            : got.cell[2][p] == 0 && got.offset[2][p] < nearest)
+        continue;
       ++checked;
       for (int a = 0; a < 3; ++a) {
         double v = 0;
