@@ -7,7 +7,7 @@ usage: tools/make-tables.py                        the tables of docs/benchmarks
        tools/make-tables.py --validation JSON...   first read the rows of `make validate` from its validation.json
        tools/make-tables.py --scores OUT...        first read the scores of scenes from these folders of results
 
-docs/benchmarks/speed-against-error.csv, kernels-h200.csv   of `make -C pipelines/benchmarks`
+docs/benchmarks/speed-against-error.csv, kernels.csv   of `make -C pipelines/benchmarks`
 docs/benchmarks/gpu-tests.csv          of `make test-gpu`
 docs/benchmarks/validation.csv         all rows of `make validate LONG=1`, by --validation; files of different cases
                                        made at one commit are put together, others are refused
@@ -177,7 +177,7 @@ def speed():
 
 
 def kernels():
-    with (ROOT / "docs/benchmarks/kernels-h200.csv").open(encoding="utf-8") as table:
+    with (ROOT / "docs/benchmarks/kernels.csv").open(encoding="utf-8") as table:
         rows = [r for r in csv.DictReader(table) if r["method"] == "explicit"]
     lines = ["| shape, precision | points | step [ms] | s a point and step | memory [B a point] |",
              "| --- | --- | --- | --- | --- |"]

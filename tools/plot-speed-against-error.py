@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The Talus authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws docs/pictures/speed-against-error.png, and headline.png beside it.
+"""Draws docs/pictures/speed-against-error.png.
 
-They are drawn from docs/benchmarks/speed-against-error.csv, which pipelines/benchmarks/speed_against_error.py writes.
+It is drawn from docs/benchmarks/speed-against-error.csv, which pipelines/benchmarks/speed_against_error.py writes.
 Rows of more than one commit or machine are refused.
 
 usage: tools/plot-speed-against-error.py [CSV [PNG]]        (Debian: python3-matplotlib)
@@ -123,14 +123,6 @@ def main():
     PICTURE.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(PICTURE)
     print(PICTURE)
-    figure, axis = plt.subplots(figsize=(7.5, 4.6), dpi=110, layout="constrained")
-    draw(axis, of(rows, "Frank Slide"))
-    axis.set_ylabel("deposit elsewhere [%]")
-    axis.set_title("Frank Slide: error over time to solution", loc="left", fontweight="bold")
-    axis.set_ylim(1, 50)
-    legend_below(axis)
-    figure.savefig(PICTURE.with_name("headline.png"))
-    print(PICTURE.with_name("headline.png"))
 
 
 if __name__ == "__main__":
