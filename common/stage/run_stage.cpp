@@ -247,7 +247,7 @@ std::optional<std::vector<fs::path>> fresh_results(const Stage& stage, const Sta
 
 void write_log(const Stage& stage, const StageContext& context, const std::string& said) {
   write_text(file_of(stage, context, ".log"),
-             fmt::format("{}, {}: {}\n{}\n", version(), utc_now(), context.command_line, said));
+             fmt::format("{}, {}: {}\n{}", version(), utc_now(), context.command_line, said));
 }
 
 /// Runs the stage, and writes all that it said into OUT/STAGE.log, of a part OUT/STAGE.PART.log: where it is done, and
@@ -259,7 +259,7 @@ void run_logged(const Stage& stage, StageContext& opened, Findings& found) {
   } catch (const Error& error) {
     const std::string said = context().end_record();
     if (error.code() != ExitCode::numerical && error.code() != ExitCode::interrupted) throw;
-    write_log(stage, opened, said + error.what());
+    write_log(stage, opened, said + error.what() + "\n");
     throw;
   }
   write_log(stage, opened, context().end_record());
