@@ -219,6 +219,21 @@ test_a_terminal_shows_few_lines_and_the_report_last() {
   [[ $(tail -n 1 shown) == *anew/report.html\ * ]] || fail "the last line is $(tail -n 1 shown)"
 }
 
+# No line of progress is wider than the terminal, and percent and time to the end are on all of them.
+test_progress_fits_the_terminal() {
+  need_tool script
+  scene
+  expect_exit 0 preprocess
+  local width
+  for width in 40 80 120; do
+    script -qec "stty cols $width; '$bin/talus-solve' recipe.toml --out out --on cpu --set solve.end_time_s=200 \
+      --set solve.stop_kinetic_fraction=0" raw >/dev/null </dev/null || fail "$(<raw)"
+    tr '\r' '\n' <raw | sed -n 's/\x1b\[K.*//; /%  eta/p' >lines
+    grep -qE '^[0-9]+ %  eta (at most )?[0-9]+ ' lines || fail "$width columns: no time to the end: $(<raw)"
+    ! grep -E "^.{$width}" lines || fail "$width columns: a line is wider"
+  done
+}
+
 test_the_log_of_a_run_can_be_read_by_a_program() {
   scene
   TALUS_PROGRESS_S=0.001 expect_exit 0 "$bin/talus" run recipe.toml --out out --json
