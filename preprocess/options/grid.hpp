@@ -48,8 +48,10 @@ struct GridOptions {
          "it must be three positive integers: along x, y and height", "The usual is [2, 2, 2]");
     v.number("jitter", jitter, recipe::Range{0, 0.5},
              "random shift of the points, as a part of their spacing; equal for equal points");
-    v.numbers("extent_m", extent, recipe::any,
-              "[west, south, east, north] of the working grid, as gdalwarp -te; empty = where all DEMs overlap");
+    v.numbers(
+        "extent_m", extent, recipe::any,
+        "[west, south, east, north] of the working grid, as gdalwarp -te; empty = where all DEMs overlap, of more than "
+        "4 million cells what lies below a line of 5 degrees from a release");
     need(v, extent.empty() || (extent.size() == 4 && extent[0] < extent[2] && extent[1] < extent[3]),
          fmt::format("grid.extent_m = [{}]", fmt::join(extent, ", ")),
          "it must be west, south, east and north, west below east and south below north", "Sort them so");

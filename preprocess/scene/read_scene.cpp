@@ -16,6 +16,7 @@
 #include "preprocess/survey/change.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/plausible_ground.hpp"
+#include "preprocess/terrain/reach.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
@@ -121,10 +122,39 @@ SceneRasters from_sliding_surface(const Options& options) {
   return scene;
 }
 
+/// The options with an extent where they name none and the model has more cells than a scene mostly needs: what lies
+/// below a line of 5 degrees from the highest of the outlines' rectangle (slides of 10^10 m3 come to 7 on average;
+/// Corominas 1996). No more of the model is read. Erodible layers may lie anywhere: with them all of it is.
+Options within_reach(const Elevation& model, Options options,
+                     const std::function<std::vector<MapPolygon>(const std::string& crs_wkt)>& outlines) {
+  constexpr std::size_t most_whole = 4'000'000;
+  constexpr double line_deg = 5;
+  if (model.scattered || !options.grid.extent.empty() || !options.erodible.empty()) return options;
+  const MapGrid whole = working_grid({&model}, grid_request(options));
+  if (whole.count() <= most_whole) return options;
+  const std::vector<MapPolygon> all = outlines(whole.crs_wkt);
+  if (all.empty()) return options;
+  const CellBox start = box_of(all, whole).grown(0, whole);
+  if (start.west >= start.east || start.south >= start.north) return options;  // beyond the model, which is said later
+  const MapGrid part = cut(whole, reach_of(model, whole, start, std::tan(line_deg * M_PI / 180)).window());
+  options.grid.extent = {part.west, part.south, part.east(), part.north()};
+  advise("part-of-model",
+         fmt::format("the working grid is what of {} lies below a line of {:g} degrees from the release, {} of {} "
+                     "cells: extent_m = [{:.10g}, {:.10g}, {:.10g}, {:.10g}]. Name another part in [preprocess.grid] "
+                     "for what may go further",
+                     model.file.string(), line_deg, grouped(static_cast<double>(part.count())),
+                     grouped(static_cast<double>(whole.count())), part.west, part.south, part.east(), part.north()),
+         {{"cells", static_cast<double>(part.count()), "1"}});
+  return options;
+}
+
 SceneRasters from_outline(const Options& options) {
   Elevation before = read_elevation("before_dem", options.before_dem, reading(options));
   share_crs({&before}, options.working_crs);
-  Raster ground = align({&before}, options).front();
+  const auto outline = [&](const std::string& crs_wkt) {
+    return read_united_polygons(options.source.polygon, crs_wkt, options.source.grow, "source");
+  };
+  Raster ground = align({&before}, within_reach(before, options, outline)).front();
   ComputedSource computed = source_by_outline(ground, before.heights(), options.source, reading(options));
   SceneRasters scene = from_source(std::move(ground), std::move(computed.source));
   scene.sliding_surface = std::move(computed.computed);
@@ -132,10 +162,29 @@ SceneRasters from_outline(const Options& options) {
   return scene;
 }
 
+/// Those of the releases; of a raster the rectangle of what it holds. None where a raster lies in another CRS.
+std::vector<MapPolygon> outlines_of(const std::vector<ReleaseOptions>& releases, const std::string& crs_wkt) {
+  std::vector<MapPolygon> all;
+  for (const ReleaseOptions& release : releases) {
+    if (!release.polygons.empty()) {
+      const auto polygons = read_united_polygons(release.polygons, crs_wkt, release.grow, release.name);
+      all.insert(all.end(), polygons.begin(), polygons.end());
+      continue;
+    }
+    const MapGrid content = RasterFile(release.thickness_raster).read_content().grid;
+    if (!same_crs(content.crs_wkt, crs_wkt)) return {};
+    all.push_back({{{{content.west, content.south}, {content.east(), content.north()}}}, {}, ""});
+  }
+  return all;
+}
+
 SceneRasters from_releases(const Options& options) {
   Elevation base = read_elevation("base_dem", options.base_dem, reading(options));
   share_crs({&base}, options.working_crs);
-  Raster bed = align({&base}, options).front();
+  Raster bed =
+      align({&base}, within_reach(base, options,
+                                  [&](const std::string& crs_wkt) { return outlines_of(options.release, crs_wkt); }))
+          .front();
   SceneRasters scene{bed, std::move(bed), {}};
   scene.heights = base.heights();
   for (std::size_t i = 0; i < options.release.size(); ++i) {
