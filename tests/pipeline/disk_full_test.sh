@@ -36,7 +36,8 @@ import json, pathlib, sys, xml.etree.ElementTree as tree
 import h5py, netCDF4
 from osgeo import gdal, ogr
 gdal.UseExceptions()
-ENDS = {".vtp": b"</VTKFile>\n", ".html": b"</html>\n", ".toml": b"\n", ".txt": b"\n", ".csv": b"\n"}
+ENDS = {".vtp": b"</VTKFile>\n", ".html": b"</html>\n", ".toml": b"\n", ".txt": b"\n", ".csv": b"\n",
+        ".log": b"\n"}
 def look(_, item):
     list(item.attrs.items())
     if isinstance(item, h5py.Dataset): item[()]

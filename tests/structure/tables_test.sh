@@ -80,10 +80,10 @@ test_rows_of_two_commits_or_of_one_case_twice_are_refused() {
 test_days_and_commits_are_those_of_the_rows() {
   tree
   local rows=tree/docs/benchmarks/speed-against-error.csv
-  sed -i '2,$s/,074f84ab9,[-0-9]*,/,0123abcde,2031-05-06,/' "$rows"
+  sed -i '2,$s/,[0-9a-f]\{8,9\},2026-[-0-9]*,/,0123abcde,2031-05-06,/' "$rows"
   expect_exit 0 make_tables
   tr '\n' ' ' <tree/README.md | grep -qF 'commit 0123abc, 2031-05-06, by' || fail "the day of the rows is not shown"
-  sed -i 's/,2026-[-0-9]*$/,2031-07-08/' tree/docs/benchmarks/kernels-h200.csv
+  sed -i 's/,2026-[-0-9]*$/,2031-07-08/' tree/docs/benchmarks/kernels.csv
   expect_exit 0 make_tables
   grep -qF '2031-07-08' tree/docs/explanation/performance.md || fail "the day of the kernels' rows is not shown"
 }
@@ -120,7 +120,7 @@ PYTHON
 
 test_rows_of_two_commits_are_not_drawn() {
   local table=$TALUS_SOURCE/docs/benchmarks/speed-against-error.csv commit
-  commit=$(sed -n '$p' "$table" | grep -oE ',[0-9a-f]{9},' | tr -d ,)
+  commit=$(tail -n 1 "$table" | cut -d, -f3)
   sed "\$s/,$commit,/,0123abcde,/" "$table" >mixed.csv
   expect_exit 1 /usr/bin/python3 "$TALUS_SOURCE/tools/plot-speed-against-error.py" mixed.csv drawn.png
   expect_words 'rows of more than one commit'
