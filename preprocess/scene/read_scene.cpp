@@ -124,11 +124,11 @@ SceneRasters from_sliding_surface(const Options& options) {
 
 /// The options with an extent where they name none and the model has more cells than a scene mostly needs: what lies
 /// below a line of 5 degrees from the highest of the outlines' rectangle (slides of 10^10 m3 come to 7 on average;
-/// Corominas 1996). No more of the model is read. Erodible layers may lie anywhere: with them all of it is.
+/// Corominas 1996), or of as many more, up to the 11 of [slides], as leave no more cells than that. No more of the
+/// model is read. Erodible layers may lie anywhere: with them all of it is.
 Options within_reach(const Elevation& model, Options options,
                      const std::function<std::vector<MapPolygon>(const std::string& crs_wkt)>& outlines) {
   constexpr std::size_t most_whole = 4'000'000;
-  constexpr double line_deg = 5;
   if (model.scattered || !options.grid.extent.empty() || !options.erodible.empty()) return options;
   const MapGrid whole = working_grid({&model}, grid_request(options));
   if (whole.count() <= most_whole) return options;
@@ -136,7 +136,12 @@ Options within_reach(const Elevation& model, Options options,
   if (all.empty()) return options;
   const CellBox start = box_of(all, whole).grown(0, whole);
   if (start.west >= start.east || start.south >= start.north) return options;  // beyond the model, which is said later
-  const MapGrid part = cut(whole, reach_of(model, whole, start, std::tan(line_deg * M_PI / 180)).window());
+  const auto below = [&](double line_deg) {
+    return cut(whole, reach_of(model, whole, start, std::tan(line_deg * M_PI / 180)).window());
+  };
+  double line_deg = 5;
+  MapGrid part = below(line_deg);
+  while (part.count() > most_whole && line_deg < 11) part = below(++line_deg);
   options.grid.extent = {part.west, part.south, part.east(), part.north()};
   advise("part-of-model",
          fmt::format("the working grid is what of {} lies below a line of {:g} degrees from the release, {} of {} "
