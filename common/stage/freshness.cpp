@@ -183,8 +183,8 @@ std::string changed_tables(const Record& record, const std::string& fresh) {
     if (noted == record.tables.end()) return fmt::format("[{}] is new", name);
     if (noted->second == sha256_of_text(text)) continue;
     const std::vector<std::string> changed = changed_keys(record, fresh, name);
-    const bool known = std::ranges::any_of(record.keys, [&](const recipe::UsedKey& key) {
-      return is_of(name_of(key), name);  // those of [scene] are not
+    const bool known = std::ranges::any_of(record.keys, [&table = name](const recipe::UsedKey& key) {
+      return is_of(name_of(key), table);  // those of [scene] are not
     });
     if (!known || !changed.empty()) return fmt::format("[{}] has changed{}", name, words_of(changed, record, name));
   }

@@ -127,15 +127,10 @@ struct GridToParticle {
         for (int b = 0; b < Shape::width; ++b) {
       TALUS_UNROLL
       for (int a = 0; a < Shape::width; ++a) {
-        const int i = s.i + a, j = s.j + b;
-        const int column = s.column(grid, a, b);
-        Real nx = 0, ny = 0;
-        if (follows) {
-          nx = grid.slope_x[grid.column(i, j)];
-          ny = grid.slope_y[grid.column(i, j)];
-        }
-        // Sums up the column, then weighs them once.
-        Vec3<Real> mean{}, rise{}, lever{}, change{};
+        const int i = s.i + a, j = s.j + b, column = s.column(grid, a, b);
+        const Real nx = follows ? grid.slope_x[grid.column(i, j)] : Real(0),
+                   ny = follows ? grid.slope_y[grid.column(i, j)] : Real(0);
+        Vec3<Real> mean{}, rise{}, lever{}, change{};  // of the column, weighed once
         Real mass = 0;
         TALUS_UNROLL
         for (int c = 0; c < Shape::width; ++c) {
@@ -145,7 +140,7 @@ struct GridToParticle {
           mean += v * s.wz[c];
           rise += v * s.gz[c];
           if (with_affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
-          if constexpr (!by_layers) mass += node.w * s.wz[c];
+          mass += node.w * s.wz[c];
           if (has_changes) {
             const Vec4<Real> d = changes[n];
             change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
