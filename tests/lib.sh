@@ -75,8 +75,8 @@ expect_stdout_paths() {
   done <"$TALUS_SCRATCH/stdout"
 }
 
-# expect_no_file DIR [EXCEPT...]: DIR is missing or holds no file, not even a hidden one, but those named and what
-# lies in folders named.
+# expect_no_file DIR [EXCEPT...]: DIR is missing or holds no file, not even a hidden one, but those named, what lies in
+# folders named, and logs of stages.
 expect_no_file() {
   local folder=$1 file name except
   shift
@@ -87,7 +87,7 @@ expect_no_file() {
       [[ $name != "$except" && $name != "$except"/* ]] || continue 2
     done
     fail "$file was left behind"
-  done < <(find "$folder" -type f ! -name '*.log' -print0)
+  done < <(find "$folder" -type f ! -regex '.*/\(preprocess\|solve\|postprocess\)\(\.[^/]*\)?\.log' -print0)
 }
 
 # made: a copy of what test_is_made has left, in the current folder.

@@ -245,24 +245,32 @@ std::optional<std::vector<fs::path>> fresh_results(const Stage& stage, const Sta
   return std::move(verdict.results);
 }
 
-void write_log(const Stage& stage, const StageContext& context, const std::string& said) {
-  write_text(file_of(stage, context, ".log"),
-             fmt::format("{}, {}: {}\n{}", version(), utc_now(), context.command_line, said));
+/// Writes what a stage said into OUT/STAGE.log, of a part OUT/STAGE.PART.log. Results do not fail with it.
+void keep_log(const Stage& stage, const StageContext& context, const std::string& said) {
+  try {
+    write_text(file_of(stage, context, ".log"),
+               fmt::format("{}, {}: {}\n{}", version(), utc_now(), context.command_line, said));
+  } catch (const DataError& error) {
+    log_warning(error.what());
+  }
 }
 
-/// Runs the stage, and writes all that it said into OUT/STAGE.log, of a part OUT/STAGE.PART.log: where it is done, and
-/// where the computation failed or was stopped. A refusal leaves the log of the results that are there.
-void run_logged(const Stage& stage, StageContext& opened, Findings& found) {
+/// Runs the stage and returns what it logged. Where the computation fails or is stopped that is kept; a refusal leaves
+/// the log of the results that are there.
+std::string run_recorded(const Stage& stage, StageContext& opened, Findings& found) {
   context().start_record();
   try {
     found.settled([&] { stage.run(opened); });
   } catch (const Error& error) {
     const std::string said = context().end_record();
-    if (error.code() != ExitCode::numerical && error.code() != ExitCode::interrupted) throw;
-    write_log(stage, opened, said + error.what() + "\n");
+    if (error.code() == ExitCode::numerical || error.code() == ExitCode::interrupted)
+      keep_log(stage, opened, said + error.what() + "\n");
+    throw;
+  } catch (...) {
+    context().end_record();
     throw;
   }
-  write_log(stage, opened, context().end_record());
+  return context().end_record();
 }
 
 std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
@@ -281,8 +289,9 @@ std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
     if (auto results = fresh_results(stage, opened)) return *results;
   check_names_of_results(stage, opened);
   opened.made_of = ingredients_before(stage, opened);
-  run_logged(stage, opened, found);
+  const std::string said = run_recorded(stage, opened, found);
   if (has_made_results(stage, opened)) note_results(stage, opened);
+  keep_log(stage, opened, said);
   return opened.results;
 }
 

@@ -123,30 +123,39 @@ SceneRasters from_sliding_surface(const Options& options) {
 }
 
 /// The options with an extent where they name none and the model has more cells than a scene mostly needs: what lies
-/// below a line of 5 degrees from the highest of the outlines' rectangle (slides of 10^10 m3 come to 7 on average;
-/// Corominas 1996), or of as many more, up to the 11 of [slides], as leave no more cells than that. No more of the
-/// model is read. Erodible layers may lie anywhere: with them all of it is.
+/// below a line from the highest of the outlines' rectangle, of 5 degrees (slides of 10^10 m3 come to 7 on average;
+/// Corominas 1996) or of as many more, up to the 11 of [slides], as leave no more cells than that. Around it as much as
+/// the rectangle is wide: a thick release spreads on level ground too. Erodible layers and voids that are to be filled
+/// may lie anywhere: with them it is all of the model.
 Options within_reach(const Elevation& model, Options options,
                      const std::function<std::vector<MapPolygon>(const std::string& crs_wkt)>& outlines) {
   constexpr std::size_t most_whole = 4'000'000;
-  if (model.scattered || !options.grid.extent.empty() || !options.erodible.empty()) return options;
+  if (model.scattered || !options.grid.extent.empty() || !options.erodible.empty() || options.voids.fill > 0)
+    return options;
   const MapGrid whole = working_grid({&model}, grid_request(options));
   if (whole.count() <= most_whole) return options;
   const std::vector<MapPolygon> all = outlines(whole.crs_wkt);
   if (all.empty()) return options;
   const CellBox start = box_of(all, whole).grown(0, whole);
   if (start.west >= start.east || start.south >= start.north) return options;  // beyond the model, which is said later
+  const int around = std::max({64, start.east - start.west, start.north - start.south});
   const auto below = [&](double line_deg) {
-    return cut(whole, reach_of(model, whole, start, std::tan(line_deg * M_PI / 180)).window());
+    const CellBox reach = reach_of(model, whole, start, std::tan(line_deg * M_PI / 180));
+    return cut(whole, reach.grown(around, whole).window());
   };
-  double line_deg = 5;
+  double line_deg = 11;
   MapGrid part = below(line_deg);
-  while (part.count() > most_whole && line_deg < 11) part = below(++line_deg);
+  for (double line = line_deg - 1; line >= 5; --line) {
+    const MapGrid longer = below(line);
+    if (longer.count() > most_whole) break;
+    part = longer;
+    line_deg = line;
+  }
   options.grid.extent = {part.west, part.south, part.east(), part.north()};
   advise("part-of-model",
          fmt::format("the working grid is what of {} lies below a line of {:g} degrees from the release, {} of {} "
                      "cells: extent_m = [{:.10g}, {:.10g}, {:.10g}, {:.10g}]. Name another part in [preprocess.grid] "
-                     "for what may go further",
+                     "for what may go further, and for gauges, sections and inflows beyond it",
                      model.file.string(), line_deg, grouped(static_cast<double>(part.count())),
                      grouped(static_cast<double>(whole.count())), part.west, part.south, part.east(), part.north()),
          {{"cells", static_cast<double>(part.count()), "1"}});

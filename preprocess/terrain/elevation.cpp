@@ -74,10 +74,10 @@ const char* name_of(VerticalUnit unit) {
   return "";
 }
 
-/// Pieces of a raster that its statistics are taken of: all of it up to 2048 x 2048 cells, of more 16 pieces of 512 x
-/// 512, as far apart as they go.
+/// Pieces of a raster that its statistics are taken of, 520 x 520 cells each: 16 at most, spread evenly. They overlap
+/// up to 2048 x 2048 cells, so that lines between tiles of any size lie within one.
 std::vector<Raster> pieces_of(const RasterFile& file) {
-  constexpr int side = 512, most = 4;
+  constexpr int side = 520, most = 4;
   const auto begins = [&](int cells) {
     const int count = std::min(most, (cells + side - 1) / side), last = std::max(0, cells - side);
     std::vector<int> found;

@@ -124,10 +124,11 @@ bool warn_of_level_piece(const Raster& heights, const std::filesystem::path& fil
   if (share < level_share || level.lower_rim < lower_share) return false;
   const auto columns = static_cast<std::size_t>(heights.grid.columns);
   warn("level-ground",
-       fmt::format("{}: {:.0f} % of the cells hold {:.7g} m exactly, one at x {:.1f}, y {:.1f}, and {:.0f} % of what "
+       fmt::format("{}: {:.0f} % of {} cells hold {:.7g} m exactly, one at x {:.1f}, y {:.1f}, and {:.0f} % of what "
                    "lies around them is lower, so that it is no water: ground made level, cells filled with one value, "
                    "or a stretch without data",
-                   file.string(), 100 * share, level.value, heights.grid.x(static_cast<int>(level.first % columns)),
+                   file.string(), 100 * share, grouped(static_cast<double>(level.valid)), level.value,
+                   heights.grid.x(static_cast<int>(level.first % columns)),
                    heights.grid.y(static_cast<int>(level.first / columns)), 100 * level.lower_rim),
        {{"share", share, "1"}, {"value", level.value, "m"}, {"lower_rim", level.lower_rim, "1"}});
   return true;
@@ -224,8 +225,10 @@ void warn_of_statistics(std::vector<Raster> pieces, const std::filesystem::path&
   const auto first_of = [&](bool (*warns)(const Raster&, const std::filesystem::path&)) {
     return std::ranges::any_of(pieces, [&](const Raster& piece) { return warns(piece, file); });
   };
+  const auto few = [](const Raster& piece) { return valid_heights(piece).size() < least_cells; };
+  if (pieces.size() > 1) std::erase_if(pieces, few);
   first_of(warn_of_steps);
-  std::erase_if(pieces, [](const Raster& piece) { return valid_heights(piece).size() < least_cells; });
+  std::erase_if(pieces, few);
   warn_of_noise(pieces, file);
   first_of(warn_of_level_piece);
   first_of(warn_of_straight_jumps);

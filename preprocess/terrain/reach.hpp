@@ -26,7 +26,7 @@ struct CellBox {
 CellBox box_of(const std::vector<MapPolygon>& outline, const MapGrid& grid);
 
 /// The box of all cells that hang together with those of `start` and lie below a line that falls from its highest cell
-/// by `tangent`, with three around, over which a flow spreads. No more of the model is read than twice as far.
+/// by `tangent`, with three around, over which a flow spreads. The model is read up to twice as far.
 CellBox reach_of(const Elevation& model, const MapGrid& grid, const CellBox& start, double tangent);
 
 }  // namespace talus::preprocess

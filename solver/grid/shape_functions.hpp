@@ -25,7 +25,7 @@ struct Linear {
   }
   /// This function writes the weights of a point nearer than `lowest` to a node as those at `lowest`, and returns the
   /// offset they stand for. A lone point would leave next to no mass on the node behind it, whose velocity then strains
-  /// it out of all measure: sum N'^2 / N is 1 / s + 1 / (1 - s), 11 at s = 0.1. An edge changes nothing.
+  /// it out of all measure: sum N'^2 / N is 1 / s + 1 / (1 - s), 11 at the 0.1 of explicit steps.
   template <class Real>
   TALUS_HD static Real weigh_edge(Real offset, int, Real lowest, Real, Real weight[2], Real[2]) {
     const Real node = Real(first(offset)), s = offset - node, most = Real(1) - lowest;

@@ -75,9 +75,10 @@ struct GridView {
   int block_columns_x = 0;             ///< blocks in x
   int nodes = 0;                       ///< stored
   Real spacing = 0, layer_height = 0;  ///< [m]
-  Real lowest_weighed = 0;             ///< cells from the ground or a wall within which weights no longer change
-  int drift = 1;                       ///< cells that a point may be from home before it is sorted again
-  int climb = 1;                       ///< the same in layers
+  Real lowest_weighed =
+      0;          ///< cells from ground and walls, of hats from any node, within which weights no longer change
+  int drift = 1;  ///< cells that a point may be from home before it is sorted again
+  int climb = 1;  ///< the same in layers
   bool homes_below =
       false;  // home is the cell of the lowest of its nodes, its own or the one below, not of the nearest
   WallNodes walls;

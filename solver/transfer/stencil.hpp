@@ -23,7 +23,9 @@ struct Stencil {
   Real slope_x = 0, slope_y = 0;                        ///< of the terrain at the point
 
   TALUS_HD Stencil(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
-    const Real fx = points.offset[0][p], fy = points.offset[1][p], fz = points.offset[2][p];
+    const Real fx = before_wall(grid, points.cell[0][p], grid.walls.east, points.offset[0][p]),
+               fy = before_wall(grid, points.cell[1][p], grid.walls.north, points.offset[1][p]),
+               fz = points.offset[2][p];
     Real half[3] = {};
     if constexpr (Shape::averaged) {
       for (int a = 0; a < 3; ++a) half[a] = points.half_extent(p, a, least_half(grid));
@@ -66,13 +68,20 @@ struct Stencil {
   }
 
  private:
+  /// The offset of a point in a cell, where it is not on the very node of a wall that ends the hats there: those have
+  /// the wall's node and the one before it, as on the opposite wall.
+  TALUS_HD static Real before_wall(const GridView<Real>& grid, int cell, int wall, Real offset) {
+    const bool on_wall = width == 2 && cell == wall && !(offset < Real(0)) && grid.lowest_weighed > Real(0);
+    return on_wall ? Real(-1e-6) : offset;  // of which weights see no more than `lowest_weighed`
+  }
   /// The least half of a side of a box [cells]: boxes shrink no further in explicit steps, which have to be shorter the
   /// smaller they are; and never to nothing.
   TALUS_HD static Real least_half(const GridView<Real>& grid) {
     return grid.lowest_weighed > Real(1e-3) ? grid.lowest_weighed : Real(1e-3);
   }
 
-  /// The cells between which points are in one direction, and how near to the edge weights still change [cells].
+  /// The cells between which points are in one direction, and how near to the edge, of hats to a node, weights still
+  /// change [cells].
   struct Range {
     int first, last;
     Real lowest;
