@@ -139,13 +139,13 @@ Options within_reach(const Elevation& model, Options options,
   const CellBox start = box_of(all, whole).grown(0, whole);
   if (start.west >= start.east || start.south >= start.north) return options;  // beyond the model, which is said later
   const int around = std::max({64, start.east - start.west, start.north - start.south});
-  const auto below = [&](double line_deg) {
+  const auto below = [&](int line_deg) {
     const CellBox reach = reach_of(model, whole, start, std::tan(line_deg * M_PI / 180));
     return cut(whole, reach.grown(around, whole).window());
   };
-  double line_deg = 11;
+  int line_deg = 11;
   MapGrid part = below(line_deg);
-  for (double line = line_deg - 1; line >= 5; --line) {
+  for (int line = line_deg - 1; line >= 5; --line) {
     const MapGrid longer = below(line);
     if (longer.count() > most_whole) break;
     part = longer;
@@ -153,7 +153,7 @@ Options within_reach(const Elevation& model, Options options,
   }
   options.grid.extent = {part.west, part.south, part.east(), part.north()};
   advise("part-of-model",
-         fmt::format("the working grid is what of {} lies below a line of {:g} degrees from the release, {} of {} "
+         fmt::format("the working grid is what of {} lies below a line of {} degrees from the release, {} of {} "
                      "cells: extent_m = [{:.10g}, {:.10g}, {:.10g}, {:.10g}]. Name another part in [preprocess.grid] "
                      "for what may go further, and for gauges, sections and inflows beyond it",
                      model.file.string(), line_deg, grouped(static_cast<double>(part.count())),
