@@ -100,15 +100,14 @@ bool warn_of_steps(const Raster& heights, const std::filesystem::path& file) {
 }
 
 void warn_of_noise(const std::vector<Raster>& pieces, const std::filesystem::path& file) {
-  std::vector<double> ratios, heights;
-  for (const Raster& piece : pieces) {
+  std::vector<double> ratios;
+  for (const Raster& piece : pieces)
     if (const double ratio = roughness_ratio(piece); !std::isnan(ratio)) ratios.push_back(ratio);
-    const std::vector<double> valid = valid_heights(piece);
-    heights.insert(heights.end(), valid.begin(), valid.end());
-  }
   const double ratio = ratios.empty() ? 0 : median(ratios);
   if (!(ratio > noise_like)) return;
-  const auto [low, high] = std::ranges::minmax(heights);
+  double low = INFINITY, high = -INFINITY;
+  for (const Raster& piece : pieces)
+    for (const double z : valid_heights(piece)) low = std::min(low, z), high = std::max(high, z);
   warn("noise-like-heights",
        fmt::format("{}: heights from {:.4g} to {:.4g} m change from cell to cell like noise (median second over first "
                    "difference {:.2f}; ground has 0.1 to 0.6): a map of slope, shade or another quantity; a surface "
