@@ -203,9 +203,17 @@ std::string command_of(const Stage& stage, const StageCall& call) {
   return command_text(words);
 }
 
+/// The file of what a stage said: OUT/STAGE.log, of a part OUT/STAGE.PART.log.
+fs::path log_of(const Stage& stage, const StageContext& context) { return file_of(stage, context, ".log"); }
+
+void keep_log(const Stage& stage, const StageContext& context, const std::string& said) {
+  write_text(log_of(stage, context), fmt::format("{}, {}: {}\n{}", version(), utc_now(), context.command_line, said));
+}
+
 /// Throws, before long work begins, where a result could not take its name at the end. A fault of the recipe is left to
 /// the stage.
 void check_names_of_results(const Stage& stage, const StageContext& context) {
+  require_replaceable(log_of(stage, context));
   if (!stage.depends) return;
   std::vector<fs::path> results;
   try {
@@ -245,16 +253,6 @@ std::optional<std::vector<fs::path>> fresh_results(const Stage& stage, const Sta
   return std::move(verdict.results);
 }
 
-/// Writes what a stage said into OUT/STAGE.log, of a part OUT/STAGE.PART.log. Results do not fail with it.
-void keep_log(const Stage& stage, const StageContext& context, const std::string& said) {
-  try {
-    write_text(file_of(stage, context, ".log"),
-               fmt::format("{}, {}: {}\n{}", version(), utc_now(), context.command_line, said));
-  } catch (const DataError& error) {
-    log_warning(error.what());
-  }
-}
-
 /// Runs the stage and returns what it logged. Where the computation fails or is stopped that is kept; a refusal leaves
 /// the log of the results that are there.
 std::string run_recorded(const Stage& stage, StageContext& opened, Findings& found) {
@@ -263,8 +261,12 @@ std::string run_recorded(const Stage& stage, StageContext& opened, Findings& fou
     found.settled([&] { stage.run(opened); });
   } catch (const Error& error) {
     const std::string said = context().end_record();
-    if (error.code() == ExitCode::numerical || error.code() == ExitCode::interrupted)
+    if (error.code() != ExitCode::numerical && error.code() != ExitCode::interrupted) throw;
+    try {
       keep_log(stage, opened, said + error.what() + "\n");
+    } catch (const DataError& second) {
+      log_warning(second.what());
+    }
     throw;
   } catch (...) {
     context().end_record();
