@@ -92,33 +92,29 @@ void check_numbers(const fs::path& file, const openvdb::FloatGrid& grid) {
                          value.getCoord().z(), *value));
 }
 
-/// Adds a triangle in pieces that are small enough.
-void add_triangle(BodySurface& surface, const std::array<double, 3>& largest, const Vector& a, const Vector& b,
-                  const Vector& c) {
-  const Vector ab = b - a, bc = c - b, ca = a - c;
-  const auto over = [&](const Vector& edge) {
-    double most = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      most = std::max(most, std::abs(edge[axis]) / largest[static_cast<std::size_t>(axis)]);
-    return most;
-  };
-  const double longest = std::max({over(ab), over(bc), over(ca)});
-  if (longest > 1) {  // halves its worst edge
-    if (over(ab) == longest) {
-      const Vector m = 0.5 * (a + b);
-      add_triangle(surface, largest, a, m, c);
-      add_triangle(surface, largest, m, b, c);
-    } else if (over(bc) == longest) {
-      add_triangle(surface, largest, b, c, a);
-    } else {
-      add_triangle(surface, largest, c, a, b);
+using Quad = std::array<Vector, 4>;  // corners, counter-clockwise seen from outside
+
+Vector area_of(const Quad& q) { return 0.5 * (q[2] - q[0]).cross(q[3] - q[1]); }
+
+/// Adds a quad in pieces that are small enough. What is turned or mirrored is cut alike.
+void add_quad(BodySurface& surface, const std::array<double, 3>& largest, const Quad& q) {
+  const Vector middle = 0.25 * (q[0] + q[1] + q[2] + q[3]);
+  bool fits = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({q[0][axis], q[1][axis], q[2][axis], q[3][axis]});
+    fits = fits && high - low <= largest[static_cast<std::size_t>(axis)];
+  }
+  if (!fits) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Vector after = 0.5 * (q[c] + q[(c + 1) % 4]), before = 0.5 * (q[c] + q[(c + 3) % 4]);
+      add_quad(surface, largest, {q[c], after, middle, before});
     }
     return;
   }
   if (surface.facets.size() == most_facets) throw std::length_error("facets");
-  const Vector area = 0.5 * ab.cross(-ca), centre = (a + b + c) / 3;
-  surface.volume += area.dot(centre - Vector(surface.low[0], surface.low[1], surface.low[2])) / 3;
-  surface.facets.push_back({{centre[0], centre[1], centre[2]}, {area[0], area[1], area[2]}});
+  const Vector area = area_of(q);
+  surface.volume += area.dot(middle - Vector(surface.low[0], surface.low[1], surface.low[2])) / 3;
+  surface.facets.push_back({{middle[0], middle[1], middle[2]}, {area[0], area[1], area[2]}});
 }
 
 /// Whether a surface of this area [m2] has more pieces than may be: a broken transform makes it endless. No piece is
@@ -130,18 +126,6 @@ bool too_many(const BodySurface& surface, const std::array<double, 3>& largest, 
     diagonal += largest[axis] * largest[axis];
   }
   return !(std::max(longest, 2 * area / diagonal) < static_cast<double>(most_facets));
-}
-
-double area_of(const std::vector<Vector>& places, const std::vector<openvdb::Vec3I>& triangles,
-               const std::vector<openvdb::Vec4I>& quads) {
-  double twice = 0;
-  const auto add = [&](const Vector& a, const Vector& b, const Vector& c) { twice += (b - a).cross(c - a).length(); };
-  for (const auto& t : triangles) add(places[t[0]], places[t[1]], places[t[2]]);
-  for (const auto& q : quads) {
-    add(places[q[0]], places[q[1]], places[q[2]]);
-    add(places[q[0]], places[q[2]], places[q[3]]);
-  }
-  return twice / 2;
 }
 
 [[noreturn]] void refuse_fine(const Wanted& wanted, const std::string& name, const BodySurface& surface) {
@@ -157,12 +141,11 @@ BodySurface surface_in(const Wanted& wanted, const openvdb::FloatGrid::Ptr& grid
   const std::array<double, 3>& largest = wanted.largest;
   check_numbers(file, *grid);
   std::vector<openvdb::Vec3s> corners;
-  std::vector<openvdb::Vec3I> triangles;
-  std::vector<openvdb::Vec4I> quads;
+  std::vector<openvdb::Vec4I> faces;  // clockwise seen from outside
   // In index space, so that single precision does not see how far from the origin the map lies.
   const openvdb::math::Transform::Ptr place = grid->transform().copy();
   grid->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
-  openvdb::tools::volumeToMesh(*grid, corners, triangles, quads, 0.0);
+  openvdb::tools::volumeToMesh(*grid, corners, faces);
   std::vector<Vector> places;
   places.reserve(corners.size());
   BodySurface surface;
@@ -174,14 +157,14 @@ BodySurface surface_in(const Wanted& wanted, const openvdb::FloatGrid::Ptr& grid
     }
     places.push_back(p);
   }
-  if (!places.empty() && too_many(surface, largest, area_of(places, triangles, quads)))
-    refuse_fine(wanted, grid->getName(), surface);
-  try {  // OpenVDB's faces run clockwise seen from outside.
-    for (const auto& t : triangles) add_triangle(surface, largest, places[t[0]], places[t[2]], places[t[1]]);
-    for (const auto& q : quads) {
-      add_triangle(surface, largest, places[q[0]], places[q[2]], places[q[1]]);
-      add_triangle(surface, largest, places[q[0]], places[q[3]], places[q[2]]);
-    }
+  const auto quad = [&](const openvdb::Vec4I& f) {
+    return Quad{places[f[3]], places[f[2]], places[f[1]], places[f[0]]};
+  };
+  double area = 0;
+  for (const openvdb::Vec4I& face : faces) area += area_of(quad(face)).length();
+  if (!places.empty() && too_many(surface, largest, area)) refuse_fine(wanted, grid->getName(), surface);
+  try {
+    for (const openvdb::Vec4I& face : faces) add_quad(surface, largest, quad(face));
   } catch (const std::length_error&) {
     refuse_fine(wanted, grid->getName(), surface);
   }
@@ -193,22 +176,23 @@ BodySurface surface_in(const Wanted& wanted, const openvdb::FloatGrid::Ptr& grid
   return surface;
 }
 
-/// The level set of a body. Faults are those of `file`.
+/// The level set of a body, on voxels about its middle: turned by a quarter or mirrored it has the same. Faults are
+/// those of `file`.
 openvdb::FloatGrid::Ptr level_set_of(const SolidBody& body, double voxel, const fs::path& file) {
   const auto far = static_cast<float>(band * voxel);
   auto grid = openvdb::FloatGrid::create(far);
-  auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-  transform->postTranslate(Vector(body.low[0], body.low[1], body.low[2]));
-  const auto last = [&](std::size_t axis) {
-    return static_cast<int>(std::ceil((body.high[axis] - body.low[axis]) / voxel + band));
+  const Vector low(body.low.data()), high(body.high.data()), middle = 0.5 * (low + high);
+  const auto last = [&](int axis) {
+    return static_cast<int>(std::ceil((high[axis] - low[axis]) / (2 * voxel) + band));
   };
-  const int margin = static_cast<int>(band);
   auto accessor = grid->getAccessor();
   bool any = false;
-  for (int i = -margin; i <= last(0); ++i)
-    for (int j = -margin; j <= last(1); ++j)
-      for (int k = -margin; k <= last(2); ++k) {
-        const double d = body.distance(body.low[0] + i * voxel, body.low[1] + j * voxel, body.low[2] + k * voxel);
+  for (int i = -last(0); i <= last(0); ++i)
+    for (int j = -last(1); j <= last(1); ++j)
+      for (int k = -last(2); k <= last(2); ++k) {
+        const Vector p = middle + voxel * Vector(i, j, k);
+        double d = body.distance(p[0], p[1], p[2]);
+        if (std::abs(d) < 1e-6 * voxel) d = 0;  // rounding does not tell the side
         if (std::abs(d) < band * voxel) accessor.setValueOn({i, j, k}, static_cast<float>(d));
         any = any || d < 0;
       }
@@ -216,6 +200,8 @@ openvdb::FloatGrid::Ptr level_set_of(const SolidBody& body, double voxel, const 
     refuse_file(file, fmt::format("the body \"{}\" lies between the voxels", body.name),
                 fmt::format("they are {:g} m wide", voxel), "Take smaller ones");
   openvdb::tools::signedFloodFill(grid->tree());
+  auto transform = openvdb::math::Transform::createLinearTransform(voxel);
+  transform->postTranslate(middle);
   grid->setTransform(transform);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setName(body.name);

@@ -3,10 +3,10 @@
 #include "solver/boundary/contact_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <tuple>
 
 #include <fmt/format.h>
 
@@ -28,12 +28,12 @@ bool open_at(const GridShape& shape, const TerrainTables& terrain, double xi, do
   return i >= 0 && j >= 0 && i < shape.columns && j < shape.rows && terrain.open[shape.index(i, j)];
 }
 
-/// The six ways a piece of surface can mainly look.
-int facing(const std::array<double, 3>& area) {
-  std::size_t axis = 0;
-  for (std::size_t a = 1; a < 3; ++a)
-    if (std::abs(area[a]) > std::abs(area[axis])) axis = a;
-  return static_cast<int>(2 * axis) + (area[axis] > 0 ? 1 : 0);
+/// Which way a piece of surface looks along each axis (-1, 1), or neither (0). Faces along the axes and halfway between
+/// them are far from where one way becomes another.
+std::array<int, 3> facing(const Vec3<double>& area) {
+  const double turn = 0.4 * length(area);
+  const auto way = [&](double along) { return (along > turn ? 1 : 0) - (along < -turn ? 1 : 0); };
+  return {way(area.x), way(area.y), way(area.z)};
 }
 
 /// The facets of a surface in half a cell that look the same way.
@@ -41,7 +41,31 @@ struct Bin {
   double area = 0, at[3] = {};
   Vec3<double> sum;
 };
-using Bins = std::map<std::tuple<int, int, int, int>, Bin>;
+using Bins = std::map<std::array<std::array<int, 3>, 2>, Bin>;
+
+/// Adds `share` of a facet to the half cell that it lies in. Between two of them it belongs to the one that it looks
+/// into, else to both: a mirrored surface gives the mirrored points.
+void add_facet(Bins& bins, const Sample& facet, double share, std::array<int, 3> half_cell, int axis) {
+  if (axis == 3) {
+    Bin& bin = bins[{half_cell, facing(facet.normal)}];
+    bin.area += share * facet.area;
+    bin.sum += facet.normal * (share * facet.area);
+    for (int a = 0; a < 3; ++a) bin.at[a] += share * facet.area * facet.at[a];
+    return;
+  }
+  constexpr double no_side = 1e-3;
+  const double place = 2 * facet.at[axis], border = std::round(place);
+  const int way = facing(facet.normal)[static_cast<std::size_t>(axis)];
+  const bool between = std::abs(place - border) < no_side;
+  const auto go_on = [&](double low_side, double part) {
+    half_cell[static_cast<std::size_t>(axis)] = static_cast<int>(low_side);
+    add_facet(bins, facet, part, half_cell, axis + 1);
+  };
+  if (!between) return go_on(std::floor(place), share);
+  if (way != 0) return go_on(way > 0 ? border : border - 1, share);
+  go_on(border - 1, share / 2);
+  go_on(border, share / 2);
+}
 
 /// The facets above the ground, those of half a cell that look one way as one: both faces of a thin wall stay apart.
 Bins exposed_facets(const MapGrid& map, const GridShape& shape, const TerrainTables& terrain,
@@ -53,14 +77,10 @@ Bins exposed_facets(const MapGrid& map, const GridShape& shape, const TerrainTab
     if (!open_at(shape, terrain, xi, eta)) continue;
     const double under = terrain.datum + terrain_at(shape, terrain, xi, eta),
                  bottom = shape.mapping == Mapping::cartesian ? terrain.datum : under;
-    if (facet.centre[2] < under) continue;
-    const double at[3] = {xi, eta, (facet.centre[2] - bottom) / shape.layer_height};
-    const double size = std::hypot(facet.area[0], facet.area[1], facet.area[2]);
-    Bin& bin = bins[{static_cast<int>(std::floor(2 * at[0])), static_cast<int>(std::floor(2 * at[1])),
-                     static_cast<int>(std::floor(2 * at[2])), facing(facet.area)}];
-    bin.area += size;
-    bin.sum += Vec3<double>{facet.area[0], facet.area[1], facet.area[2]};
-    for (int a = 0; a < 3; ++a) bin.at[a] += size * at[a];
+    const Vec3<double> area{facet.area[0], facet.area[1], facet.area[2]};
+    const double size = length(area);
+    if (facet.centre[2] < under || !(size > 0)) continue;
+    add_facet(bins, {{xi, eta, (facet.centre[2] - bottom) / shape.layer_height}, area * (1 / size), size, 0}, 1, {}, 0);
   }
   return bins;
 }

@@ -32,6 +32,14 @@ SolidBody ball(const std::string& name, double x, double y, double z, double rad
           [=](double px, double py, double pz) { return std::hypot(px - x, py - y, pz - z) - radius; }};
 }
 
+/// A body that no voxel of 1 m about the middle of its box lies in.
+SolidBody dust() {
+  SolidBody body = ball("dust", 0.26, 0.26, 0.26, 0.1);
+  body.low = {0, 0, 0};
+  body.high = {1, 1, 1};
+  return body;
+}
+
 using LevelSet = test::InScratch;
 
 TEST_F(LevelSet, surface_of_a_ball_far_from_the_origin) {
@@ -62,7 +70,7 @@ TEST_F(LevelSet, surface_of_a_body_in_memory_is_that_of_its_file) {
   test::expect_same(memory, file, &BodySurface::volume, &BodySurface::low);
   ASSERT_EQ(memory.facets.size(), file.facets.size());
   for (std::size_t f = 0; f < file.facets.size(); ++f) EXPECT_EQ(memory.facets[f].area, file.facets[f].area) << f;
-  EXPECT_NE(data_fault([&] { surface_of({ball("dust", 0.26, 0.26, 0.26, 0.1), 1}, {1, 1, 1}); }), "");
+  EXPECT_NE(data_fault([&] { surface_of({dust(), 1}, {1, 1, 1}); }), "");
 }
 
 TEST_F(LevelSet, several_bodies_are_told_apart_by_name_and_a_changed_byte_is_noticed_before_openvdb_sees_it) {
@@ -160,7 +168,7 @@ TEST_F(LevelSet, refuses_what_is_none) {
   write_domain(scratch / "domain.vdb", domain);
   EXPECT_TRUE(
       holds(data_fault([&] { read_level_set(scratch / "domain.vdb", "terrain", one_metre); }), {"is no level set"}));
-  EXPECT_THROW(write_level_sets(scratch / "thin.vdb", {ball("dust", 0.26, 0.26, 0.26, 0.1)}, 1), DataError);
+  EXPECT_THROW(write_level_sets(scratch / "thin.vdb", {dust()}, 1), DataError);
   EXPECT_FALSE(std::filesystem::exists(scratch / "thin.vdb"));
 }
 

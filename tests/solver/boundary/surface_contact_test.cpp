@@ -4,6 +4,11 @@
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
+#include <array>
+#include <cmath>
+#include <memory>
+#include <tuple>
+
 #include "solver/boundary/contact_points.hpp"
 #include "solver/boundary/surface_contact.hpp"
 #include "solver/boundary/walls.hpp"
@@ -140,6 +145,92 @@ TEST(ContactPoints, refuse_an_obstacle_without_a_file) {
   EXPECT_THROW(make_contact_points(scene.map, scene.grid, make_terrain_tables(scene.grid),
                                    {{"pier", "/no/such.vdb", "", nullptr}}),
                DataError);
+}
+
+/// A place on the map, turned about the middle by quarters, then mirrored.
+struct Turn {
+  int quarters;
+  bool mirrored;
+  std::array<double, 2> operator()(double x, double y) const {
+    for (int q = 0; q < quarters; ++q) std::tie(x, y) = std::tuple(-y, x);
+    return {mirrored ? -x : x, y};
+  }
+  std::array<double, 2> back(double x, double y) const { return Turn{(4 - quarters) % 4, false}(mirrored ? -x : x, y); }
+};
+
+/// An upright box: middle, half of its sides and height [m], and the angle that it is turned by [rad].
+struct UprightBox {
+  double x, y, along, across, height, angle;
+  double distance(double px, double py, double pz) const {
+    const double c = std::cos(angle), s = std::sin(angle), u = std::abs((px - x) * c + (py - y) * s) - along,
+                 v = std::abs((py - y) * c - (px - x) * s) - across, over = std::max(pz - height, -5 - pz);
+    return std::max({u, v, over});
+  }
+};
+
+constexpr Corner far_corner{500000, 5000000};  // of a map of 32 x 32 cells of 2 m
+constexpr double middle_x = far_corner.x + 32, middle_y = far_corner.y + 32;
+
+/// The contact points of a box on a slope, all of it turned: places from the middle in cells, normals, areas.
+ContactPoints points_of(const UprightBox& box, const Turn& turn) {
+  Domain d = ground(
+      32, 32, 2, 1.0,
+      [&](double x, double y) {
+        const auto [u, v] = turn.back(x - middle_x, y - middle_y);
+        return 0.02 * u - 0.01 * v;
+      },
+      far_corner);
+  fill(d, {far_corner.x + 10, far_corner.x + 14, far_corner.y + 8, far_corner.y + 12, 0, 2});
+  const Scene scene = make_scene(d, {});
+  const auto [x, y] = turn(box.x, box.y);
+  const double reach = box.along + box.across;
+  const SolidBody body{"box",
+                       {middle_x + x - reach, middle_y + y - reach, -5},
+                       {middle_x + x + reach, middle_y + y + reach, box.height},
+                       [=](double px, double py, double pz) {
+                         const auto [u, v] = turn.back(px - middle_x, py - middle_y);
+                         return box.distance(u, v, pz);
+                       }};
+  return make_contact_points(scene.map, scene.grid, make_terrain_tables(scene.grid),
+                             {{"box", "", "", std::make_shared<const VoxelBody>(VoxelBody{body, 0.25})}});
+}
+
+/// The largest difference of a contact point from that of the turned body [cells; the area in cells' faces].
+double off_when_turned(const UprightBox& box, const Turn& turn) {
+  const ContactPoints points = points_of(box, {0, false}), turned = points_of(box, turn);
+  if (points.area.size() != turned.area.size()) return INFINITY;
+  const auto place = [](const ContactPoints& p, std::size_t c, std::size_t axis) {
+    return p.cell[axis][c] + p.offset[axis][c] - (axis < 2 ? 15.5 : 0.0);
+  };
+  double worst = 0;
+  for (std::size_t c = 0; c < points.area.size(); ++c) {
+    const auto [x, y] = turn(place(points, c, 0), place(points, c, 1));
+    const auto [nx, ny] = turn(points.normal[c].x, points.normal[c].y);
+    double best = INFINITY;
+    for (std::size_t t = 0; t < turned.area.size(); ++t) {
+      const Vec3<double>& n = turned.normal[t];
+      best = std::min(
+          best, std::max({std::abs(place(turned, t, 0) - x), std::abs(place(turned, t, 1) - y),
+                          std::abs(place(turned, t, 2) - place(points, c, 2)), std::abs(n.x - nx), std::abs(n.y - ny),
+                          std::abs(n.z - points.normal[c].z), std::abs(turned.area[t] - points.area[c])}));
+    }
+    worst = std::max(worst, best);
+  }
+  return worst;
+}
+
+TEST(ContactPoints, of_a_turned_or_mirrored_body_are_turned_or_mirrored) {
+  const UprightBox boxes[]{{6, 4, 3, 2, 6, 0},
+                           {6.3, 4.1, 3.2, 1.7, 6.1, 0},
+                           {5, 3, 4, 0.4, 5, 0},
+                           {5, 3, 4, 0.4, 5, M_PI / 4},
+                           {-4, 7, 5, 2, 8, 0.5},
+                           {0, 0, 0.6, 0.5, 4, 0.2},
+                           {1, -2, 2.5, 2.5, 3.3, M_PI / 4}};
+  for (const UprightBox& box : boxes)
+    for (const Turn turn : {Turn{1, false}, Turn{2, false}, Turn{3, false}, Turn{0, true}, Turn{1, true}})
+      EXPECT_LT(off_when_turned(box, turn), 1e-9)
+          << "box at " << box.x << ", " << box.y << " by " << turn.quarters << " quarters, mirrored " << turn.mirrored;
 }
 
 /// Two points, one of each obstacle.
