@@ -51,7 +51,7 @@ struct GridOptions {
     v.numbers(
         "extent_m", extent, recipe::any,
         "[west, south, east, north] of the working grid, as gdalwarp -te; empty = where all DEMs overlap, of more than "
-        "4 million cells what a release or outline can reach");
+        "4 million cells what the slide can reach");
     need(v, extent.empty() || (extent.size() == 4 && extent[0] < extent[2] && extent[1] < extent[3]),
          fmt::format("grid.extent_m = [{}]", fmt::join(extent, ", ")),
          "it must be west, south, east and north, west below east and south below north", "Sort them so");

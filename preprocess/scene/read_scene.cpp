@@ -13,6 +13,7 @@
 #include "preprocess/regions/polygon_cover.hpp"
 #include "preprocess/release/source.hpp"
 #include "preprocess/scene/candidates.hpp"
+#include "preprocess/scene/part_of_model.hpp"
 #include "preprocess/survey/change.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/plausible_ground.hpp"
@@ -43,20 +44,6 @@ SceneRasters from_source(Raster before, Source source) {
   return scene;
 }
 
-Surveyed surveyed(const Options& options) {
-  const auto before = static_cast<std::ptrdiff_t>(findings_so_far().size());
-  Surveyed result{survey_of(options), {}, std::nullopt};
-  std::vector<Filled> filled;
-  result.surfaces = align({&result.survey.before, &result.survey.after}, options, &filled);
-  result.slide = slide_on(result.survey, result.surfaces[0], filled);
-  if (const auto& ignored = result.slide->ignored; !ignored.empty() && std::ranges::count(ignored, 1) == 0)
-    warn("ignore-covers-nothing", options.difference.ignore.string() +
-                                      ": covers the centre of no cell of the working grid, so that nothing is ignored");
-  const std::vector<Finding> all = findings_so_far();
-  result.findings.assign(all.begin() + before, all.end());
-  return result;
-}
-
 /// What failed between two surveys, found by itself where the recipe does not say it, once the surveys are in order.
 Source changed_source(const SurfacePair& pair, const Change& change, const Options& options, const SurveyFiles& files,
                       SurveyMemory* memory) {
@@ -82,16 +69,52 @@ Source changed_source(const SurfacePair& pair, const Change& change, const Optio
   return source;
 }
 
+/// What changed between two surveys, and what of it failed.
+struct Failed {
+  Change change;
+  Source source;
+};
+
+/// On the grid of both surfaces; `slide` gets source and deposit.
+Failed failed_between(const Survey& survey, const std::vector<Raster>& surfaces, SurveyedSlide& slide,
+                      const Options& options, SurveyMemory* memory) {
+  const Raster &before = surfaces[0], &after = surfaces[1];
+  Change change = change_between(before, after, options.deposit, slide);
+  const SurveyFiles files{options.before_dem.string(), options.after_dem.string(), survey.applied};
+  const SurfacePair pair{before, after, options.after_dem, false, survey.source, change.noise};
+  Source source = changed_source(pair, change, options, files, memory);
+  delineate(survey, {before, after, source.thickness}, options.deposit, slide);
+  return {std::move(change), std::move(source)};
+}
+
+Surveyed surveyed(const Options& options) {
+  const auto before = static_cast<std::ptrdiff_t>(findings_so_far().size());
+  Surveyed result{survey_of(options), {}, std::nullopt};
+  std::vector<Filled> filled;
+  const std::vector<const Elevation*> dems{&result.survey.before, &result.survey.after};
+  const auto outlines = [&](const MapGrid& whole) {
+    return seen_from_afar(dems, whole, options, [&](const std::vector<Raster>& surfaces) {
+      SurveyedSlide slide = slide_on(result.survey, surfaces[0], {});
+      const Failed failed = failed_between(result.survey, surfaces, slide, options, nullptr);
+      return SlideOutlines{corners_of(failed.source.thickness), corners_of(slide.deposit), "", findings_so_far()};
+    });
+  };
+  result.surfaces = align(dems, within_reach(dems, options, outlines), &filled);
+  result.slide = slide_on(result.survey, result.surfaces[0], filled);
+  if (const auto& ignored = result.slide->ignored; !ignored.empty() && std::ranges::count(ignored, 1) == 0)
+    warn("ignore-covers-nothing", options.difference.ignore.string() +
+                                      ": covers the centre of no cell of the working grid, so that nothing is ignored");
+  const std::vector<Finding> all = findings_so_far();
+  result.findings.assign(all.begin() + before, all.end());
+  return result;
+}
+
 SceneRasters from_before_and_after(const Options& options, SurveyMemory* memory) {
   auto [survey, surfaces, of_slide, found] = memory != nullptr ? memory->surveyed(options) : surveyed(options);
   SurveyedSlide& slide = *of_slide;
   if (!survey.source.empty())
     survey.source = read_united_polygons(options.source.polygon, survey.grid.crs_wkt, options.source.grow, "source");
-  const Change change = change_between(surfaces[0], surfaces[1], options.deposit, slide);
-  const SurveyFiles files{options.before_dem.string(), options.after_dem.string(), survey.applied};
-  const SurfacePair pair{surfaces[0], surfaces[1], options.after_dem, false, survey.source, change.noise};
-  const Source source = changed_source(pair, change, options, files, memory);
-  delineate(survey, {surfaces[0], surfaces[1], source.thickness}, options.deposit, slide);
+  const auto [change, source] = failed_between(survey, surfaces, slide, options, memory);
   std::vector<double> lowering;
   for (std::size_t c = 0; c < surfaces[0].values.size(); ++c)
     lowering.push_back(std::isinf(change.noise[c]) ? 0.0 : surfaces[0].values[c] - surfaces[1].values[c]);
@@ -109,66 +132,34 @@ SceneRasters from_sliding_surface(const Options& options) {
   share_crs({&before, &sliding}, options.working_crs);
   require_comparable_crs(sliding.crs_wkt(), sliding.file, before.crs_wkt(), before.file.string());
   judge_vertical_datums(before.heights(), sliding.heights());
-  std::vector<Raster> surfaces = align({&before}, options);
-  log_resampling(sliding, surfaces[0].grid);
-  const Raster under = onto_grid(sliding, surfaces[0].grid);
+  const auto source_on = [&](const Raster& ground, const Raster& under) {
+    SurfacePair pair{ground, under, options.sliding_surface, true};
+    if (!options.source.polygon.empty())
+      pair.outline = read_united_polygons(options.source.polygon, ground.grid.crs_wkt, options.source.grow, "source");
+    return find_source(pair, options.source);
+  };
+  const auto outlines = [&](const MapGrid& whole) {
+    return seen_from_afar({&before, &sliding}, whole, options, [&](const std::vector<Raster>& surfaces) {
+      return SlideOutlines{corners_of(source_on(surfaces[0], surfaces[1]).thickness)};
+    });
+  };
+  Raster ground = align({&before}, within_reach({&before}, options, outlines)).front();
+  log_resampling(sliding, ground.grid);
+  const Raster under = onto_grid(sliding, ground.grid);
   require_data(under, sliding.file);
-  SurfacePair pair{surfaces[0], under, options.sliding_surface, true};
-  if (!options.source.polygon.empty())
-    pair.outline = read_united_polygons(options.source.polygon, under.grid.crs_wkt, options.source.grow, "source");
-  Source source = find_source(pair, options.source);
-  SceneRasters scene = from_source(std::move(surfaces[0]), std::move(source));
+  Source source = source_on(ground, under);
+  SceneRasters scene = from_source(std::move(ground), std::move(source));
   scene.heights = before.heights();
   return scene;
-}
-
-/// The options with an extent where they name none and the model has more cells than a scene mostly needs: what lies
-/// below a line from the highest of the outlines' rectangle, of 5 degrees (slides of 10^10 m3 come to 7 on average;
-/// Corominas 1996) or of as many more, up to the 11 of [slides], as leave no more cells than that. Around it as much as
-/// the rectangle is wide: a thick release spreads on level ground too. Erodible layers and voids that are to be filled
-/// may lie anywhere: with them it is all of the model.
-Options within_reach(const Elevation& model, Options options,
-                     const std::function<std::vector<MapPolygon>(const std::string& crs_wkt)>& outlines) {
-  constexpr std::size_t most_whole = 4'000'000;
-  if (model.scattered || !options.grid.extent.empty() || !options.erodible.empty() || options.voids.fill > 0)
-    return options;
-  const MapGrid whole = working_grid({&model}, grid_request(options));
-  if (whole.count() <= most_whole) return options;
-  const std::vector<MapPolygon> all = outlines(whole.crs_wkt);
-  if (all.empty()) return options;
-  const CellBox start = box_of(all, whole).grown(0, whole);
-  if (start.west >= start.east || start.south >= start.north) return options;  // beyond the model, which is said later
-  const int around = std::max({64, start.east - start.west, start.north - start.south});
-  const auto below = [&](int line_deg) {
-    const CellBox reach = reach_of(model, whole, start, std::tan(line_deg * M_PI / 180));
-    return cut(whole, reach.grown(around, whole).window());
-  };
-  int line_deg = 11;
-  MapGrid part = below(line_deg);
-  for (int line = line_deg - 1; line >= 5; --line) {
-    const MapGrid longer = below(line);
-    if (longer.count() > most_whole) break;
-    part = longer;
-    line_deg = line;
-  }
-  options.grid.extent = {part.west, part.south, part.east(), part.north()};
-  advise("part-of-model",
-         fmt::format("the working grid is what of {} lies below a line of {} degrees from the release, {} of {} "
-                     "cells: extent_m = [{:.10g}, {:.10g}, {:.10g}, {:.10g}]. Name another part in [preprocess.grid] "
-                     "for what may go further, and for gauges, sections and inflows beyond it",
-                     model.file.string(), line_deg, grouped(static_cast<double>(part.count())),
-                     grouped(static_cast<double>(whole.count())), part.west, part.south, part.east(), part.north()),
-         {{"cells", static_cast<double>(part.count()), "1"}});
-  return options;
 }
 
 SceneRasters from_outline(const Options& options) {
   Elevation before = read_elevation("before_dem", options.before_dem, reading(options));
   share_crs({&before}, options.working_crs);
-  const auto outline = [&](const std::string& crs_wkt) {
-    return read_united_polygons(options.source.polygon, crs_wkt, options.source.grow, "source");
+  const auto outline = [&](const MapGrid& whole) {
+    return SlideOutlines{read_united_polygons(options.source.polygon, whole.crs_wkt, options.source.grow, "source")};
   };
-  Raster ground = align({&before}, within_reach(before, options, outline)).front();
+  Raster ground = align({&before}, within_reach({&before}, options, outline)).front();
   ComputedSource computed = source_by_outline(ground, before.heights(), options.source, reading(options));
   SceneRasters scene = from_source(std::move(ground), std::move(computed.source));
   scene.sliding_surface = std::move(computed.computed);
@@ -195,10 +186,10 @@ std::vector<MapPolygon> outlines_of(const std::vector<ReleaseOptions>& releases,
 SceneRasters from_releases(const Options& options) {
   Elevation base = read_elevation("base_dem", options.base_dem, reading(options));
   share_crs({&base}, options.working_crs);
-  Raster bed =
-      align({&base}, within_reach(base, options,
-                                  [&](const std::string& crs_wkt) { return outlines_of(options.release, crs_wkt); }))
-          .front();
+  const auto outlines = [&](const MapGrid& whole) {
+    return SlideOutlines{outlines_of(options.release, whole.crs_wkt)};
+  };
+  Raster bed = align({&base}, within_reach({&base}, options, outlines)).front();
   SceneRasters scene{bed, std::move(bed), {}};
   scene.heights = base.heights();
   for (std::size_t i = 0; i < options.release.size(); ++i) {
@@ -235,6 +226,7 @@ std::string SurveyMemory::mark_of(Options options) {
   const GridOptions fresh;
   SourceOptions source;
   source.polygon = options.source.polygon;
+  source.seed = options.source.seed;  // of a large model the part depends on it
   options.source = source;
   options.deposit = DepositOptions{.polygon = options.deposit.polygon};
   options.thickness_factor = 1;
