@@ -202,8 +202,9 @@ test-gpu: with-tests ## the tests of kernels on this machine's GPU, into docs/be
 	@cmake --build $(BUILD) -j $(JOBS) --target talus-tests-solver
 	@tools/record-gpu-tests.py $(BUILD)/bin/talus-tests-solver
 
-facts: ## the documents' tables, from files of results; names figures without a source [VALIDATION=FILE.json]
+facts: ## the documents' tables and what is drawn of them; names figures without a source [VALIDATION=FILE.json]
 	@python3 tools/make-tables.py $(if $(VALIDATION),--validation $(VALIDATION))
+	@/usr/bin/python3 tools/make-pictures.py speed-against-error.png --bin $(BUILD)/bin --work $(BUILD)/pictures
 
 # All scenes that end in a score; those of real events need their data, and the rest of Xinmo's are nobody's to give.
 scenes_without_score := xinmo frank-ensemble synthetic-ensemble synthetic-slides

@@ -118,6 +118,12 @@ PYTHON
   expect_exit 0 /usr/bin/python3 look.py "$TALUS_SOURCE/tools/make-pictures.py"
 }
 
+test_every_picture_of_the_documents_is_listed_with_what_makes_it() {
+  local folder=$TALUS_SOURCE/docs/pictures
+  diff <(grep -oE '"[^"]+\.png"' "$folder/pictures.json" | tr -d '"' | sort) <(cd "$folder" && ls -- *.png | sort) ||
+    fail "pictures.json names others than there are"
+}
+
 test_rows_of_two_commits_are_not_drawn() {
   local table=$TALUS_SOURCE/docs/benchmarks/speed-against-error.csv commit
   commit=$(tail -n 1 "$table" | cut -d, -f3)
