@@ -101,11 +101,13 @@ std::string_view wide_encoding(std::string_view start) {
   using namespace std::string_view_literals;
   if (start.starts_with("\xFF\xFE\0\0"sv) || start.starts_with("\0\0\xFE\xFF"sv)) return "UTF-32";
   if (start.starts_with("\xFF\xFE"sv) || start.starts_with("\xFE\xFF"sv)) return "UTF-16";
-  constexpr std::size_t pairs = 4;
-  if (start.size() < 2 * pairs) return "";
-  const auto all = [&](std::size_t zero) {
+  constexpr std::size_t least_pairs = 4, most_pairs = 32;
+  const std::size_t pairs = std::min(start.size() / 2, most_pairs);
+  if (pairs < least_pairs) return "";
+  const auto is_plain = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\n' || c == '\r'; };
+  const auto all = [&](std::size_t zero) {  // heights as binary integers have zeros between bytes too
     for (std::size_t n = 0; n < 2 * pairs; ++n)
-      if ((start[n] == '\0') != (n % 2 == zero)) return false;
+      if (n % 2 == zero ? start[n] != '\0' : !is_plain(start[n])) return false;
     return true;
   };
   return all(1) ? "UTF-16LE" : all(0) ? "UTF-16BE" : "";

@@ -404,6 +404,14 @@ std::string sparse(const std::string& head, std::size_t head_size, const fs::pat
                      region(fs::absolute(file).string(), head_size, from, size));
 }
 
+/// Whether the bytes of UTF-16 or UTF-32 behind its mark are plain letters, as those of a grid are: heights as binary
+/// integers may begin like it.
+bool is_plain_but_wide(const std::string& start) {
+  return std::all_of(start.begin(), start.end(), [](unsigned char c) {
+    return c == '\0' || c >= 0xFE || c == '\t' || c == '\n' || c == '\r' || (c >= ' ' && c <= '~');
+  });
+}
+
 /// DEM.prj beside DEM.asc, in either case of its letters; empty = none.
 fs::path projection_beside(const fs::path& file) {
   for (const char* extension : {".prj", ".PRJ"}) {
@@ -421,7 +429,7 @@ bool begins_as_ascii_grid(const fs::path& file) { return ascii_header(start_of(f
 
 AsciiGrid::AsciiGrid(const fs::path& file) : path_(file.string()) {
   const std::string start = start_of(file, longest_header);
-  if (const std::string_view encoding = wide_encoding(start); !encoding.empty())
+  if (const std::string_view encoding = wide_encoding(start); !encoding.empty() && is_plain_but_wide(start))
     throw DataError({fmt::format("{}: its text is {}", path_, encoding), "a grid of text is wanted as UTF-8",
                      mend_of_encoding(encoding, path_)});
   const auto header = ascii_header(start);

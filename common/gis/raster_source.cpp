@@ -328,7 +328,19 @@ std::vector<double> RasterSource::read(int column, int line, int columns, int li
 
 /// Everything that the file masks: nodata, mask band, alpha.
 void RasterSource::drop_masked(std::vector<double>& values, int column, int line, int columns, int lines) {
-  if ((band_->GetMaskFlags() & GMF_ALL_VALID) != 0) return;
+  if ((band_->GetMaskFlags() & GMF_ALL_VALID) != 0) {
+    // GDAL takes an alpha of real numbers for no mask.
+    for (int b = 2; b <= dataset_->GetRasterCount(); ++b) {
+      if (dataset_->GetRasterBand(b)->GetColorInterpretation() != GCI_AlphaBand) continue;
+      std::vector<double> alpha(values.size());
+      if (dataset_->GetRasterBand(b)->RasterIO(GF_Read, column, line, columns, lines, alpha.data(), columns, lines,
+                                               GDT_Float64, 0, 0, nullptr) != CE_None)
+        return;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (alpha[i] == 0) values[i] = std::nan("");
+    }
+    return;
+  }
   std::vector<GByte> mask(values.size());
   if (band_->GetMaskBand()->RasterIO(GF_Read, column, line, columns, lines, mask.data(), columns, lines, GDT_Byte, 0, 0,
                                      nullptr) != CE_None)

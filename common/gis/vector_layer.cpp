@@ -150,7 +150,14 @@ void VectorLayer::require_whole() const {
 }
 
 Fault VectorLayer::none_found(const std::string& what, const std::string& other, const std::string& mend) const {
-  const char* nothing = where().empty() ? "the layer is empty" : "none meets it";
+  const auto features = layer().GetFeatureCount();
+  const std::string nothing = !where().empty() ? "none meets it"
+                              : features <= 0
+                                  ? "the layer is empty"
+                                  : fmt::format(
+                                        "it has {} rows without a shape; of a CSV file a column \"WKT\" holds "
+                                        "shapes",
+                                        features);
   return {fmt::format("{}: no {} in layer \"{}\"{}", file().string(), what, name(),
                       where().empty() ? "" : " whose attributes meet " + where()),
           other.empty() ? nothing : "it holds " + other, mend + " (FILE|layername=LAYER|subset=CONDITION)"};

@@ -96,7 +96,9 @@ Surveyed surveyed(const Options& options) {
     return seen_from_afar(dems, whole, options, [&](const std::vector<Raster>& surfaces) {
       SurveyedSlide slide = slide_on(result.survey, surfaces[0], {});
       const Failed failed = failed_between(result.survey, surfaces, slide, options, nullptr);
-      return SlideOutlines{corners_of(failed.source.thickness), corners_of(slide.deposit), "", findings_so_far()};
+      std::vector<Finding> beyond = findings_so_far();
+      std::erase_if(beyond, [](const Finding& finding) { return finding.name != "larger-lowering"; });
+      return SlideOutlines{corners_of(failed.source.thickness), corners_of(slide.deposit), "", beyond};
     });
   };
   result.surfaces = align(dems, within_reach(dems, options, outlines), &filled);
@@ -271,9 +273,14 @@ SceneRasters read_scene(const Options& given, SurveyMemory* memory) {
   SceneRasters scene;
   found.settled([&] {
     scene = read_by_way(resolved(given), memory);
-    if (scene.survey || given.way() == Way::laboratory) return;  // surveys were looked at when they were compared
+    const Way way = given.way();
+    if (way == Way::laboratory) return;
+    for (const Release& release : scene.releases) judge_thickness(release.thickness, "release " + release.name);
+    if (way == Way::before_and_sliding_surface)
+      warn_of_step_at_rim(scene.releases.front().thickness, given.sliding_surface);
+    if (scene.survey) return;  // surveys were looked at when they were compared
     judge_lengths(scene.bed.grid, given.working_crs);
-    judge_heights(scene.before, given.first_dem(), given.vertical_unit);
+    judge_heights(way == Way::base_and_releases ? scene.bed : scene.before, given.first_dem(), given.vertical_unit);
   });
   warn_of_unused("preprocess", given.accept, found.list());
   scene.findings = found.list();

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/error.hpp"
 #include "common/map/polygon.hpp"
 #include "common/map/statistics.hpp"
+#include "common/stage/findings.hpp"
 #include "preprocess/survey/change.hpp"
 #include "preprocess/survey/survey.hpp"
 
@@ -72,6 +74,27 @@ double larger_of(const SurveyedSlide& slide) {
   return larger;
 }
 
+/// Warns where the deposit goes on to what was not surveyed.
+void warn_of_cut_deposit(const Raster& deposit) {
+  const MapGrid& grid = deposit.grid;
+  std::size_t cells = 0;
+  std::array<int, 2> first{};
+  each_cell(grid, [&](int column, int row) {
+    if (!(deposit.at(column, row) > 0)) return;
+    bool ends = column == 0 || row == 0 || column + 1 == grid.columns || row + 1 == grid.rows;
+    each_near(grid, {column, row}, 1, [&](int c, int r) { ends = ends || std::isnan(deposit.at(c, r)); });
+    if (ends && cells++ == 0) first = {column, row};
+  });
+  if (cells == 0) return;
+  warn("deposit-cut",
+       fmt::format(
+           "the deposit reaches the edge of what both surveys hold in {} cells, the first at x {:.1f}, y {:.1f}: "
+           "what lies beyond is in no volume, error, run-out or score. Give surveys that reach further, or a "
+           "larger extent_m",
+           cells, grid.x(first[0]), grid.y(first[1])),
+       {{"cells", static_cast<double>(cells), "1"}});
+}
+
 }  // namespace
 
 std::string outside_words(const SurveyedSlide& slide) {
@@ -128,6 +151,7 @@ void delineate(const Survey& survey, const SlideSurfaces& surfaces, const Deposi
   slide.volumes = {
       {"source", volume_in(source, slide, survey.source.empty() ? &change : nullptr, survey.errors)},
       {"deposit", volume_in(slide.deposit, slide, survey.deposit.empty() ? &change : nullptr, survey.errors)}};
+  warn_of_cut_deposit(slide.deposit);
   const double share = given.outside_share * larger_of(slide);
   slide.outside_is_large = survey.deposit.empty() && slide.outside.unbalanced() > share;
   if (!survey.deposit.empty() || slide.outside_is_large) return;

@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/gis/ascii_grid.hpp"
+#include "common/gis/features.hpp"
 #include "common/gis/resampling.hpp"
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
@@ -140,6 +141,7 @@ Elevation read_elevation(const std::string& key, const std::filesystem::path& fi
   elevation.scattered = is_point_file(file);
   if (elevation.scattered) {
     elevation.points = read_points(file, how);
+    if (!key.starts_with("bed.")) warn_of_points(elevation.points, file);
   } else {
     ReadOptions options = how;
     elevation.reprojected = !options.to_crs.empty() && !in_metres(file);
@@ -239,7 +241,12 @@ void require_comparable_crs(const std::string& crs, const std::filesystem::path&
   const std::string name = crs_name(crs.empty() ? other_crs : crs);
   // What has no code is taken out of the other file by the shell, and an ASCII grid has its CRS in a file beside.
   const bool by_code = name.find(':') != std::string::npos && name.find(' ') == std::string::npos;
-  const std::string mend = gdal::begins_as_ascii_grid(bare)
+  const auto raster = glance_at_raster(bare);
+  const std::string mend = raster && raster->driver == "XYZ"
+                               ? fmt::format("gdal_translate -a_srs {} {} {}",
+                                             by_code ? name : fmt::format("\"$(gdalsrsinfo -o wkt {})\"", named), bare,
+                                             std::filesystem::path(bare).replace_extension(".tif").string())
+                           : gdal::begins_as_ascii_grid(bare)
                                ? fmt::format("gdalsrsinfo -o wkt1 {} | sed '/^$/d' > {}", by_code ? name : named,
                                              std::filesystem::path(bare).replace_extension(".prj").string())
                                : fmt::format("gdal_edit.py -a_srs {} {}",

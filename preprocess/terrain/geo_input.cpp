@@ -116,10 +116,24 @@ std::optional<Columns> columns_of_header(const std::vector<std::string>& words, 
   return Columns{{*found[0], *found[1], *found[2]}, z};
 }
 
+/// Whether the coordinates may be longitudes and latitudes.
+bool like_degrees(const ScatteredPoints& points) {
+  const Extent e = points.extent();
+  return !points.x.empty() && e.west >= -180 && e.east <= 360 && e.south >= -90 && e.north <= 90;
+}
+
 /// Throws DataError where points are in degrees or feet; `or_else` names another way out (see ReadOptions).
 void require_metric(const ScatteredPoints& points, const std::filesystem::path& file, const std::string& or_else) {
-  if (is_metric(points.crs_wkt)) return;
   const Extent e = points.extent();
+  constexpr double smallest = 1;  // [m]: no model is smaller, and one of a degree is 100 km wide
+  if (points.crs_wkt.empty() && points.x.size() > 3 && like_degrees(points) &&
+      std::max(e.east - e.west, e.north - e.south) < smallest)
+    throw DataError({fmt::format("{}: x {:.6g}..{:.6g}, y {:.6g}..{:.6g} and no CRS", file.string(), e.west, e.east,
+                                 e.south, e.north),
+                     "they look like longitudes and latitudes, and this stage needs metres",
+                     or_else.empty() ? "Reproject it: ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:<a metric one>"
+                                     : "Say so: " + or_else.substr(std::string_view("or ").size())});
+  if (is_metric(points.crs_wkt)) return;
   const std::string zone = utm_zone_at(points.crs_wkt, 0.5 * (e.west + e.east), 0.5 * (e.south + e.north));
   throw DataError(
       {fmt::format("{}: CRS is {}", file.string(), crs_name(points.crs_wkt)), "this stage needs metres",
@@ -180,10 +194,8 @@ ScatteredPoints read_points_as_given(const std::filesystem::path& file, PointHei
 }
 
 ScatteredPoints with_likely_crs(ScatteredPoints points, const std::filesystem::path& file) {
+  if (!points.crs_wkt.empty() || !like_degrees(points)) return points;
   const Extent e = points.extent();
-  const bool like_degrees =
-      points.crs_wkt.empty() && !points.x.empty() && e.west >= -180 && e.east <= 360 && e.south >= -90 && e.north <= 90;
-  if (!like_degrees) return points;
   points.crs_wkt = crs_by_name("EPSG:4326");
   warn("taken-as-degrees",
        fmt::format("{}: x {:g}..{:g}, y {:g}..{:g} and no CRS: taken as longitude and latitude (WGS 84)", file.string(),

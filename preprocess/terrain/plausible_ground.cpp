@@ -5,14 +5,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "common/gis/crs.hpp"
+#include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
+#include "preprocess/regions/regions.hpp"
+#include "preprocess/terrain/height_statistics.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -21,6 +25,8 @@ constexpr double refused = 0.01, told = 0.001;  // parts of a length
 constexpr double steep_deg = 50;                // between what terrain is and what it is in feet
 constexpr double steep_share = 0.1;
 constexpr double highest_mountain = 9000;      // [m]
+constexpr double lowest_land = -440;           // [m]
+constexpr double flat_share = 0.001;           // of the distance across a model
 constexpr std::size_t least_cells_told = 100;  // fewer cells have no usual slope
 
 /// The slope [deg] that a tenth of a surface exceeds; 0 where there is too little of it.
@@ -62,6 +68,136 @@ struct Plateau {
   double next;
 };
 
+/// The heights around cells that hang together.
+struct Around {
+  std::vector<std::size_t> rim;                   // up to six cells away: resampling mixes heights that far
+  double lowest = INFINITY, highest = -INFINITY;  // seven to nine cells away
+  double steepest = 0;                            // from a cell to the next of all these [m]
+};
+
+/// Of a group of `marked` cells; `distance` is 0 everywhere and left so.
+Around around_group(const Raster& heights, const std::vector<char>& marked,
+                    const std::vector<std::array<int, 2>>& group, std::vector<char>& distance) {
+  constexpr int mixed = 6, looked_at = 9;
+  const MapGrid& grid = heights.grid;
+  std::vector<std::size_t> seen;
+  for (const auto& [column, row] : group) seen.push_back(grid.index(column, row));
+  for (const std::size_t c : seen) distance[c] = 1;
+  Around found;
+  for (std::size_t n = 0; n < seen.size(); ++n) {
+    const int away = distance[seen[n]];  // and one
+    if (away > looked_at) continue;
+    for (const std::size_t c : around(grid, seen[n])) {
+      if (distance[c] != 0 || marked[c]) continue;
+      distance[c] = static_cast<char>(away + 1);
+      seen.push_back(c);
+      const double z = heights.values[c], step = std::abs(z - heights.values[seen[n]]);
+      if (step > found.steepest) found.steepest = step;  // false beside missing cells
+      if (away <= mixed) {
+        found.rim.push_back(c);
+      } else if (!std::isnan(z)) {
+        found.lowest = std::min(found.lowest, z);
+        found.highest = std::max(found.highest, z);
+      }
+    }
+  }
+  for (const std::size_t c : seen) distance[c] = 0;
+  return found;
+}
+
+constexpr std::size_t fewest_alike = 4;  // fewer are spikes or pits
+constexpr double least_jump = 50, jump_share = 0.25;
+
+std::string place_in(const MapGrid& grid, std::size_t cell) {
+  const auto [column, row] = grid.cell_of(cell);
+  return fmt::format("x {:.1f}, y {:.1f}", grid.x(column), grid.y(row));
+}
+
+/// The mend of values that stand for missing cells and were mixed with heights.
+std::string mend_of_mixed(const std::string& file, double value) {
+  return fmt::format(
+      "Begin with the model as it was before it was resampled, and declare the value there: "
+      "gdalwarp -srcnodata {:.17g}; or cut the place out of {} (gdal_rasterize -burn -9999 around it, "
+      "then gdal_edit.py -a_nodata -9999)",
+      value, file);
+}
+
+/// How far from all that lies seven to nine cells away heights must be to be none: no slope explains it.
+double least_step(const Raster& heights, double span_share, const Around& around) {
+  return std::max({least_jump, span_share * (around.highest - around.lowest), 9 * heights.grid.cell});
+}
+
+/// A value that four cells or more hold exactly, all of them far below or above all that lies around: ground slopes
+/// somewhere to its lakes and from its roofs. Returns whether there is one.
+bool judge_walled_plateau(const Raster& heights, const std::filesystem::path& file, double value) {
+  std::vector<char> marked(heights.values.size()), distance(heights.values.size());
+  std::size_t cells = 0, first = 0;
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    marked[i] = heights.values[i] == value;
+    if (marked[i] && cells++ == 0) first = i;
+  }
+  if (cells < fewest_alike) return false;
+  Around all;
+  std::vector<char> left = marked;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (!left[i]) continue;
+    const auto [column, row] = heights.grid.cell_of(i);
+    const Around found = around_group(heights, marked, take_connected(heights.grid, left, {{column, row}}), distance);
+    all.lowest = std::min(all.lowest, found.lowest);
+    all.highest = std::max(all.highest, found.highest);
+    all.steepest = std::max(all.steepest, found.steepest);
+    if (all.lowest <= value && value <= all.highest) return false;
+  }
+  if (!(all.lowest <= all.highest)) return false;
+  const double next = value < all.lowest ? all.lowest : all.highest, jump = std::abs(next - value);
+  constexpr double step_share = 0.25;  // of the jump, from a cell to the next; on a slope it is a seventh
+  if (!(jump > least_step(heights, jump_share, all)) || all.steepest < step_share * jump) return false;
+  refuse_unless_accepted(
+      "fill-value",
+      {fmt::format("{}: {} cells hold {:g} exactly, the first at {}", file.string(), cells, value,
+                   place_in(heights.grid, first)),
+       fmt::format("seven to nine cells away no height is nearer than {:g} m, with others between: a value that stands "
+                   "for missing cells, mixed with heights by resampling; or a lake or roof behind walls on all sides",
+                   next),
+       mend_of_mixed(file.string(), value) + ". Where it is ground, all is well"},
+      {{"cells", static_cast<double>(cells), "1"}, {"value", value, "m"}, {"jump", jump, "m"}});
+  return true;
+}
+
+/// Cells beside missing ones that lie far below or above all that lies further out. Returns whether there are.
+bool judge_mixed_rims(const Raster& heights, const std::filesystem::path& file) {
+  std::vector<char> marked(heights.values.size()), distance(heights.values.size());
+  for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = std::isnan(heights.values[i]);
+  std::vector<char> left = marked;
+  std::size_t cells = 0, worst = 0;
+  double far = 0;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (!left[i]) continue;
+    const auto [column, row] = heights.grid.cell_of(i);
+    const Around found = around_group(heights, marked, take_connected(heights.grid, left, {{column, row}}), distance);
+    if (!(found.lowest <= found.highest)) continue;
+    const double jump = least_step(heights, 1, found);
+    for (const std::size_t c : found.rim) {
+      const double off = std::max(found.lowest - heights.values[c], heights.values[c] - found.highest);
+      if (!(off > jump)) continue;
+      ++cells;
+      if (off > far) far = off, worst = c;
+    }
+  }
+  if (cells < fewest_alike) return false;
+  refuse_unless_accepted(
+      "mixed-voids",
+      {fmt::format("{}: beside cells without elevation {} cells lie up to {:.4g} m below or above all that is seven to "
+                   "nine cells away, the worst at {}: {:.6g} m",
+                   file.string(), cells, far, place_in(heights.grid, worst), heights.values[worst]),
+       "a value that stands for missing cells was mixed with heights by resampling; or a wall of that height hides "
+       "what "
+       "is missing",
+       mend_of_mixed(file.string(), -9999) + ". Where it is a wall, all is well"},
+      {{"cells", static_cast<double>(cells), "1"}, {"worst", far, "m"}});
+  return true;
+}
+
 /// The cells at the end of the values that `before` orders first.
 template <class Before>
 Plateau plateau_at_end(const std::vector<double>& values, double end, double other_end, const Before& before) {
@@ -79,8 +215,6 @@ Plateau plateau_at_end(const std::vector<double>& values, double end, double oth
 }  // namespace
 
 bool judge_fill_values(const Raster& heights, const std::filesystem::path& file) {
-  constexpr std::size_t least_cells = 4;  // fewer are spikes or pits
-  constexpr double least_jump = 50, jump_share = 0.25;
   double low = INFINITY, high = -INFINITY;
   for (const double z : heights.values) {
     if (z < low) low = z;
@@ -88,7 +222,7 @@ bool judge_fill_values(const Raster& heights, const std::filesystem::path& file)
   }
   const auto judge = [&](const Plateau& p, double other_end) {
     const double jump = std::abs(p.next - p.value), span = std::abs(other_end - p.next);
-    if (p.cells < least_cells || !(jump > std::max(least_jump, jump_share * span))) return false;
+    if (p.cells < fewest_alike || !(jump > std::max(least_jump, jump_share * span))) return false;
     const auto columns = static_cast<std::size_t>(heights.grid.columns);
     refuse_unless_accepted(
         "fill-value",
@@ -105,8 +239,10 @@ bool judge_fill_values(const Raster& heights, const std::filesystem::path& file)
     return true;
   };
   if (!(low < high)) return false;
-  const bool below = judge(plateau_at_end(heights.values, low, high, std::less<>()), high);
-  return judge(plateau_at_end(heights.values, high, low, std::greater<>()), low) || below;
+  const bool below = judge(plateau_at_end(heights.values, low, high, std::less<>()), high),
+             above = judge(plateau_at_end(heights.values, high, low, std::greater<>()), low),
+             mixed = !below && !above && judge_walled_plateau(heights, file, most_common_height(heights).value);
+  return judge_mixed_rims(heights, file) || below || above || mixed;
 }
 
 void judge_lengths(const MapGrid& grid, const std::string& working_crs) {
@@ -135,9 +271,28 @@ void judge_lengths(const MapGrid& grid, const std::string& working_crs) {
 
 void judge_heights(const Raster& surface, const std::filesystem::path& file, VerticalUnit unit) {
   const double steep = steep_tenth(surface);
-  double highest = -INFINITY;
-  for (const double z : surface.values)
+  double highest = -INFINITY, lowest = INFINITY;
+  for (const double z : surface.values) {
     if (z > highest) highest = z;  // false for nodata
+    if (z < lowest) lowest = z;
+  }
+  const MapGrid& grid = surface.grid;
+  const double across = grid.cell * std::hypot(grid.columns, grid.rows);
+  if (highest - lowest < flat_share * across)
+    warn("flat-ground",
+         fmt::format(
+             "{}: all heights lie within {:.3g} m over {:.4g} m of ground, from {:.6g} to {:.6g} m. A plain may; "
+             "else they are kilometres or shares of something, or cells that were never filled in",
+             file.string(), highest - lowest, across, lowest, highest),
+         {{"relief", highest - lowest, "m"}});
+  if (lowest < lowest_land)
+    warn(
+        "below-all-land",
+        fmt::format("{}: the lowest ground lies at {:.6g} m, and the shore of the Dead Sea at {:g} m. The bed of a sea "
+                    "may; else depths are written as positive numbers with the sign turned, or what stands for "
+                    "missing cells was mixed with heights",
+                    file.string(), lowest, lowest_land),
+        {{"lowest", lowest, "m"}});
   if (steep <= steep_deg && highest <= highest_mountain) return;
   refuse_unless_accepted(
       "steep-ground",
@@ -151,6 +306,60 @@ void judge_heights(const Raster& surface, const std::filesystem::path& file, Ver
                    std::atan(std::tan(steep * std::numbers::pi / 180) * 0.3048) * 180 / std::numbers::pi),
        unit_advice(unit)},
       {{"slope_of_steepest_tenth", steep, "degree"}, {"highest", highest, "m"}});
+}
+
+void judge_thickness(const Raster& thickness, const std::string& name) {
+  constexpr double told_thick = 0.3, refused_thick = 1;
+  Sum sum;
+  std::size_t cells = 0;
+  for (const double t : thickness.values) {
+    if (!(t > 0)) continue;
+    sum.add(t);
+    ++cells;
+  }
+  if (cells == 0) return;
+  const double area = static_cast<double>(cells) * thickness.grid.cell * thickness.grid.cell,
+               mean = sum.value() / static_cast<double>(cells), across = 2 * std::sqrt(area / std::numbers::pi);
+  if (mean <= told_thick * across) return;
+  const std::string words =
+      fmt::format("{}: {:.4g} m thick on average, on ground of {} m2, as much as a circle {:.4g} m across", name, mean,
+                  grouped(area), across);
+  const std::string causes =
+      "slides are seldom thicker than a fifth of that. A block that leaves a wall may be; else the thickness is in "
+      "another unit (centimetres, feet), an elevation, or a number that marks cells (255, a value for missing ones), "
+      "or "
+      "two surfaces do not share unit, place and datum";
+  const std::vector<FindingNumber> numbers{{"thickness", mean, "m"}, {"across", across, "m"}};
+  if (mean <= refused_thick * across) return warn("thick-release", words + ": " + causes, numbers);
+  refuse_unless_accepted("thick-release",
+                         {words, causes, "Look at the numbers (gdalinfo -stats, ogrinfo -al) and bring them to metres"},
+                         numbers);
+}
+
+void warn_of_step_at_rim(const Raster& thickness, const std::filesystem::path& file) {
+  constexpr double steep_rim = 1.5;  // cells, which a surface of 56 degrees rises over one
+  const MapGrid& grid = thickness.grid;
+  std::vector<double> rim;
+  Sum sum;
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < thickness.values.size(); ++i) {
+    const double t = thickness.values[i];
+    if (!(t > 0)) continue;
+    sum.add(t);
+    ++cells;
+    const auto near = around(grid, i);
+    if (std::any_of(near.begin(), near.end(), [&](std::size_t c) { return !(thickness.values[c] > 0); }))
+      rim.push_back(t);
+  }
+  if (rim.empty()) return;
+  const double step = median(rim), mean = sum.value() / static_cast<double>(cells);
+  if (!(step > steep_rim * grid.cell) || !(step > mean / 2)) return;
+  warn("step-at-rim",
+       fmt::format("{}: the sliding surface does not come up to the ground: along its rim it ends {:.3g} m below, of "
+                   "{:.3g} m on average. An outline may cut it so; else it has another datum, unit or place than the "
+                   "ground, or holds depths",
+                   file.string(), step, mean),
+       {{"step", step, "m"}});
 }
 
 }  // namespace talus::preprocess

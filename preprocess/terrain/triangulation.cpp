@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -18,6 +19,9 @@
 #include <Eigen/Dense>
 
 #include "common/error.hpp"
+#include "common/map/statistics.hpp"
+#include "common/stage/findings.hpp"
+#include "common/stage/stage.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -223,6 +227,70 @@ Raster interpolate_scattered(const ScatteredPoints& points, const MapGrid& grid,
     raster.at(column, row) = elevation_at(triangulation, at, near);
   });
   return raster;
+}
+
+namespace {
+
+void warn_of_doubles(const ScatteredPoints& points, const std::filesystem::path& file) {
+  std::map<std::pair<double, double>, std::pair<double, double>> ranges;
+  for (std::size_t i = 0; i < points.x.size(); ++i) {
+    const auto [at, is_new] = ranges.try_emplace({points.x[i], points.y[i]}, points.z[i], points.z[i]);
+    auto& [low, high] = at->second;
+    low = std::min(low, points.z[i]);
+    high = std::max(high, points.z[i]);
+  }
+  constexpr double noticeable = 0.1;  // [m]
+  std::size_t places = 0;
+  double worst = 0;
+  std::pair<double, double> where;
+  for (const auto& [place, range] : ranges) {
+    const double apart = range.second - range.first;
+    places += apart > noticeable ? 1 : 0;
+    if (apart > worst) worst = apart, where = place;
+  }
+  if (places == 0) return;
+  warn(
+      "points-at-one-place",
+      fmt::format("{}: in {} places points differ in elevation, by {:.3g} m at most, at x {:.6f}, y {:.6f}; their mean "
+                  "is taken. Roof and ground, or two surveys in one file? Take one of them",
+                  file.string(), places, worst, where.first, where.second),
+      {{"places", static_cast<double>(places), "1"}, {"worst", worst, "m"}});
+}
+
+}  // namespace
+
+void warn_of_points(const ScatteredPoints& points, const std::filesystem::path& file) {
+  warn_of_doubles(points, file);
+  const Extent e = points.extent();
+  const auto vertices =
+      merged(points, {.columns = 1, .rows = 1, .west = e.west, .south = e.south, .cell = 1, .crs_wkt = ""});
+  const HeightTriangulation triangulation(vertices.begin(), vertices.end());
+  if (triangulation.dimension() < 2) return;
+  const auto length = [&](const auto& edge) { return std::sqrt(triangulation.segment(edge).squared_length()); };
+  std::vector<double> lengths;
+  for (const auto& edge : triangulation.finite_edges()) lengths.push_back(length(edge));
+  constexpr double usual_sides = 6, noticeable = 0.01;
+  const double longest = usual_sides * median(lengths);
+  double all = 0, bare = 0, largest = 0;
+  Point where;
+  for (const auto face : triangulation.finite_face_handles()) {
+    const auto triangle = triangulation.triangle(face);
+    const double area = std::abs(triangle.area());
+    all += area;
+    double side = 0;
+    for (int corner = 0; corner < 3; ++corner) side = std::max(side, length(std::pair(face, corner)));
+    if (!(side > longest)) continue;
+    bare += area;
+    if (area > largest) largest = area, where = CGAL::centroid(triangle);
+  }
+  if (bare <= noticeable * all) return;
+  warn("gaps-between-points",
+       fmt::format(
+           "{}: {:.2g} % of the ground that its points span, {} m2, lies between points more than {:.3g} m apart, "
+           "six times what is usual; the largest such triangle is at x {:.1f}, y {:.1f}. Ground there is a plane "
+           "over the gap. Give more points, or crop the gap away (extent_m in [preprocess.grid])",
+           file.string(), 100 * bare / all, grouped(bare), longest, where.x() + e.west, where.y() + e.south),
+       {{"area", bare, "m2"}});
 }
 
 }  // namespace talus::preprocess

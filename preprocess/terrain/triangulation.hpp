@@ -31,4 +31,9 @@ std::vector<double> fill_hole(const Raster& raster, const std::vector<Cell>& hol
 /// their convex hull. Points at one place are averaged. Throws DataError (naming `file`): all lie on a line.
 Raster interpolate_scattered(const ScatteredPoints& points, const MapGrid& grid, const std::filesystem::path& file);
 
+/// Warnings of points that leave out ground, or contradict one another: "gaps-between-points" (more than a hundredth of
+/// the triangulated ground lies in triangles with a side longer than six times the median one, by area), and
+/// "points-at-one-place" (their elevations differ by more than 0.1 m).
+void warn_of_points(const ScatteredPoints& points, const std::filesystem::path& file);
+
 }  // namespace talus::preprocess

@@ -157,6 +157,19 @@ TEST_F(AsciiGrid, in_utf16_is_refused_with_the_command) {
                     {"./dem.asc: its text is UTF-16", "iconv -f UTF-16 -t UTF-8 ./dem.asc > ./dem-utf8.asc"}));
 }
 
+// Heights of 0 to 255 m as integers of two bytes are zeros and other bytes in turn, and -2 m is the mark of UTF-16.
+TEST_F(AsciiGrid, is_not_told_from_low_heights_in_binary) {
+  scratch.write("dem.hdr",
+                "NROWS 40\nNCOLS 50\nNBITS 16\nPIXELTYPE SIGNEDINT\nBYTEORDER I\nULXMAP 2.5\nULYMAP 197.5\nXDIM 5\n"
+                "YDIM 5\n");
+  std::string cells(2 * 40 * 50, '\0');
+  for (std::size_t n = 0; n < 40 * 50; ++n) cells[2 * n] = static_cast<char>(n % 240);
+  EXPECT_DOUBLE_EQ(read_raster(scratch.write("dem.bil", cells)).at(5, 39), 5);
+  cells[0] = static_cast<char>(0xFE);
+  cells[1] = static_cast<char>(0xFF);
+  EXPECT_DOUBLE_EQ(read_raster(scratch.write("dem.bil", cells)).at(0, 39), -2);
+}
+
 TEST_F(AsciiGrid, windows_of_one_with_an_odd_header_equal_the_whole) {
   std::string text = "# odd\n" + with(with(usual, "ncols 3", "ncols 50"), "nrows 2", "nrows 40");
   for (int i = 0; i < 2000; ++i) text += std::to_string(0.37 * i) + (i % 50 == 49 ? "\n" : " ");

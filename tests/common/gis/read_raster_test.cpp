@@ -50,11 +50,11 @@ TEST_F(RasterFile, round_trip_keeps_every_bit_and_nodata) {
 }
 
 TEST_F(RasterFile, of_several_bands_is_refused_and_one_with_a_mask_is_not) {
-  const auto write = [&](const std::vector<std::string>& colours) {
+  const auto write = [&](const std::vector<std::string>& colours, const char* type = "Byte") {
     std::string bands;
     for (std::size_t b = 0; b < colours.size(); ++b)
-      bands += fmt::format("<VRTRasterBand dataType=\"Byte\" band=\"{}\"><ColorInterp>{}</ColorInterp></VRTRasterBand>",
-                           b + 1, colours[b]);
+      bands += fmt::format("<VRTRasterBand dataType=\"{}\" band=\"{}\"><ColorInterp>{}</ColorInterp></VRTRasterBand>",
+                           type, b + 1, colours[b]);
     scratch.write("picture.vrt",
                   "<VRTDataset rasterXSize=\"4\" rasterYSize=\"3\"><GeoTransform>0,10,0,30,0,-10"
                   "</GeoTransform>" +
@@ -68,7 +68,10 @@ TEST_F(RasterFile, of_several_bands_is_refused_and_one_with_a_mask_is_not) {
   write({"Red", "Green", "Blue", "Alpha"});
   EXPECT_TRUE(holds(fault("picture.vrt"), {"3 bands"}));
   write({"Gray", "Alpha"});
-  EXPECT_FALSE(holds(fault("picture.vrt"), {"bands"})) << "its cells are all masked, and that is said";
+  const std::string masked = fault("picture.vrt");
+  EXPECT_FALSE(holds(masked, {"bands"})) << "its cells are all masked, and that is said";
+  write({"Gray", "Alpha"}, "Float32");
+  EXPECT_EQ(fault("picture.vrt"), masked);
   write({"Gray"});
   EXPECT_EQ(read_raster(scratch / "picture.vrt").grid.columns, 4);
 }

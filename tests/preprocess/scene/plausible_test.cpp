@@ -5,11 +5,14 @@
 #include <functional>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "common/domain/domain.hpp"
 #include "common/gis/crs.hpp"
 #include "data_samples/terrains.hpp"
 #include "preprocess/particles/seed.hpp"
 #include "preprocess/terrain/plausible_ground.hpp"
+#include "preprocess/terrain/triangulation.hpp"
 #include "tests/common/findings.hpp"
 #include "tests/preprocess/scene.hpp"
 
@@ -261,6 +264,130 @@ TEST(plausible, steep_ground_names_every_cause_and_how_to_tell_them_apart) {
                                         "two known places", "vertical_unit", "gdal_edit.py -a_srs", "steep-ground"}));
   for (const double slope : {0.3, 0.7, 1.0, 1.15})
     EXPECT_EQ(refusal([&](double x) { return 4000 + slope * x; }), "") << slope;
+}
+
+/// The mean of 3 x 3 cells.
+Raster smoothed(const Raster& raster) {
+  Raster mean = raster;
+  each_cell(raster.grid, [&](int column, int row) {
+    double sum = 0;
+    int count = 0;
+    each_near(raster.grid, {column, row}, 1, [&](int c, int r) { sum += raster.at(c, r), ++count; });
+    mean.at(column, row) = sum / count;
+  });
+  return mean;
+}
+
+/// A slope with a hole of `value` in it, 21 cells wide, smoothed three times as resampling mixes it.
+Raster mixed_hole(double value) {
+  const MapGrid grid = grid_of(60, 60, 10);
+  return smoothed(smoothed(smoothed(raster_of(grid, [&](double x, double y) {
+    const bool hole = std::abs(x - grid.west - 300) < 105 && std::abs(y - grid.south - 300) < 105;
+    return hole ? value : 700 + 0.4 * (x - grid.west);
+  }))));
+}
+
+TEST(plausible, values_for_missing_cells_that_were_mixed_with_heights_are_found) {
+  for (const double value : {0.0, -99.0, 3000.0}) {
+    const std::string fault = test::fault_of<DataError>([&] { judge_fill_values(mixed_hole(value), "dem.tif"); });
+    EXPECT_TRUE(holds(fault, {"dem.tif: ", fmt::format("cells hold {:g} exactly", value), "mixed with heights",
+                              "gdalwarp -srcnodata", "fill-value"}));
+  }
+  Raster voids = mixed_hole(-9999);
+  for (double& z : voids.values)
+    if (z == -9999) z = nan;
+  EXPECT_TRUE(holds(test::fault_of<DataError>([&] { judge_fill_values(voids, "dem.tif"); }),
+                    {"beside cells without elevation", "mixed-voids"}));
+}
+
+TEST(plausible, lakes_quarries_and_voids_of_real_ground_are_no_missing_cells) {
+  const MapGrid grid = grid_of(60, 60, 10);
+  const auto is_fine = [&](const std::function<double(double, double)>& height) {
+    const Raster ground = raster_of(grid, [&](double x, double y) { return height(x - grid.west, y - grid.south); });
+    return test::fault_of<DataError>([&] { judge_fill_values(ground, "dem.tif"); });
+  };
+  const auto slope = [](double x) { return 700 + 0.4 * x; };
+  EXPECT_EQ(is_fine([&](double x, double y) {  // a lake behind walls of 40 to 120 m that runs out to the west
+              const bool wide =
+                  std::abs(x - 250) < 100 && std::abs(y - 300)<100, out = x> 50 && x < 250 && std::abs(y - 300) < 20;
+              return wide || out ? 720.0 : slope(x);
+            }),
+            "");
+  EXPECT_EQ(is_fine([&](double x, double y) {  // a hole in a wall
+              return std::abs(x - 300) < 60 && std::abs(y - 300) < 30 ? nan : slope(x) + (x > 300 ? 120 : 0);
+            }),
+            "");
+}
+
+TEST(plausible, releases_thicker_than_they_are_wide_are_said_or_refused) {
+  const MapGrid grid = grid_of(40, 40, 10);
+  const auto judged = [&](double thickness) {
+    const Raster release = raster_of(grid, [&](double x, double y) {
+      return std::hypot(x - grid.west - 200, y - grid.south - 200) < 60 ? thickness : 0.0;
+    });
+    return [release] { judge_thickness(release, "release a"); };
+  };
+  EXPECT_TRUE(test::findings_of(judged(20)).empty());
+  EXPECT_TRUE(holds(test::messages_of(judged(60)).at(0), {"release a: 60 m thick", "centimetres", "place and datum"}));
+  EXPECT_TRUE(
+      holds(test::fault_of<DataError>([&] { test::findings_of(judged(200)); }), {"200 m thick", "thick-release"}));
+}
+
+TEST(plausible, a_sliding_surface_that_ends_below_the_ground_is_said) {
+  const MapGrid grid = grid_of(40, 40, 10);
+  const auto said = [&](double deepest, double below) {
+    const Raster thickness = raster_of(grid, [&](double x, double y) {
+      const double r = std::hypot(x - grid.west - 200, y - grid.south - 200) / 100;
+      return r < 1 ? deepest * (1 - r * r) + below : 0;
+    });
+    return test::findings_of([&] { warn_of_step_at_rim(thickness, "surface.tif"); });
+  };
+  EXPECT_TRUE(said(30, 0).empty());
+  EXPECT_TRUE(said(30, 5).empty());
+  EXPECT_EQ(said(10, 20).at(0).name, "step-at-rim");
+}
+
+TEST(plausible, plains_and_depths_are_said) {
+  const MapGrid grid = grid_of(60, 40, 10);
+  const auto said = [&](const std::function<double(double)>& height) {
+    const Raster surface = raster_of(grid, [&](double x, double) { return height(x - grid.west); });
+    std::string names;
+    for (const Finding& f : test::findings_of([&] { judge_heights(surface, "dem.tif", VerticalUnit::declared); }))
+      names += f.name + " ";
+    return names;
+  };
+  EXPECT_EQ(said([](double) { return 0.0; }), "flat-ground ");
+  EXPECT_EQ(said([](double x) { return (900 + 0.5 * x) / 1000; }), "flat-ground ");
+  EXPECT_EQ(said([](double x) { return -900 - 0.5 * x; }), "below-all-land ");
+  EXPECT_EQ(said([](double x) { return -300 + 0.1 * x; }), "");
+}
+
+TEST(plausible, points_that_leave_gaps_or_contradict_one_another_are_said) {
+  const auto points = [](bool gap, double doubled) {
+    ScatteredPoints p;
+    for (int i = 0; i < 60; ++i)
+      for (int j = 0; j < 60; ++j) {
+        if (gap && i > 20 && i < 40 && j > 20 && j < 40) continue;
+        p.x.push_back(5.0 * i + 0.3 * (j % 3));
+        p.y.push_back(5.0 * j);
+        p.z.push_back(i);
+      }
+    if (doubled == 0) return p;
+    p.x.push_back(p.x[100]);
+    p.y.push_back(p.y[100]);
+    p.z.push_back(p.z[100] + doubled);
+    return p;
+  };
+  const auto said = [&](bool gap, double doubled) {
+    const ScatteredPoints p = points(gap, doubled);
+    std::string names;
+    for (const Finding& f : test::findings_of([&] { warn_of_points(p, "points.xyz"); })) names += f.name + " ";
+    return names;
+  };
+  EXPECT_EQ(said(false, 0), "");
+  EXPECT_EQ(said(false, 0.05), "");
+  EXPECT_EQ(said(true, 0), "gaps-between-points ");
+  EXPECT_EQ(said(false, 3), "points-at-one-place ");
 }
 
 /// A scar whose deposit the river took: swapped, mass comes from nowhere.

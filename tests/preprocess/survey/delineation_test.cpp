@@ -3,6 +3,7 @@
 // Which changed ground belongs to a slide: made ones with split deposits, neighbours and noise, and all pairs of
 // surveys at hand.
 #include "preprocess/survey/patches.hpp"
+#include "tests/common/findings.hpp"
 #include "tests/preprocess/scene.hpp"
 #include "tests/preprocess/survey_data.hpp"
 
@@ -121,6 +122,16 @@ TEST(delineation, a_far_lobe_down_the_valley_belongs_to_the_slide_unless_the_gap
   EXPECT_NEAR(near.outside.sure_rise / made.volume(far_lobe), 1, 0.02);
   EXPECT_TRUE(near.outside_is_large);
   EXPECT_TRUE(test::holds(outside_words(near), {"draw the deposit"}));
+}
+
+TEST(delineation, a_deposit_that_the_edge_of_the_map_cuts_is_said) {
+  MadeSlide made({}, {scar, near_lobe});
+  const auto is_said = [&] {
+    return std::ranges::count(test::findings_of([&] { made.slide(); }), "deposit-cut", &Finding::name) == 1;
+  };
+  EXPECT_FALSE(is_said());
+  made.options.grid.extent = {made.grid.west, made.grid.south + near_lobe.y, made.grid.east(), made.grid.north()};
+  EXPECT_TRUE(is_said());
 }
 
 /// Heaps of four cells each stand out, and are noise by the number of their cells; together they are much of the slide.
