@@ -71,6 +71,7 @@ struct Plateau {
 /// The heights around cells that hang together.
 struct Around {
   std::vector<std::size_t> rim;                   // up to six cells away: resampling mixes heights that far
+  std::vector<double> ring;                       // the heights seven to nine cells away
   double lowest = INFINITY, highest = -INFINITY;  // seven to nine cells away
   double steepest = 0;                            // from a cell to the next of all these [m]
 };
@@ -96,6 +97,7 @@ Around around_group(const Raster& heights, const std::vector<char>& marked,
       if (away <= mixed) {
         found.rim.push_back(c);
       } else if (!std::isnan(z)) {
+        found.ring.push_back(z);
         found.lowest = std::min(found.lowest, z);
         found.highest = std::max(found.highest, z);
       }
@@ -107,6 +109,8 @@ Around around_group(const Raster& heights, const std::vector<char>& marked,
 
 constexpr std::size_t fewest_alike = 4;  // fewer are spikes or pits
 constexpr double least_jump = 50, jump_share = 0.25;
+
+constexpr double step_share = 0.25;  // of a jump, from a cell to the next; on a slope it is a seventh
 
 std::string place_in(const MapGrid& grid, std::size_t cell) {
   const auto [column, row] = grid.cell_of(cell);
@@ -143,22 +147,26 @@ bool judge_walled_plateau(const Raster& heights, const std::filesystem::path& fi
     if (!left[i]) continue;
     const auto [column, row] = heights.grid.cell_of(i);
     const Around found = around_group(heights, marked, take_connected(heights.grid, left, {{column, row}}), distance);
-    all.lowest = std::min(all.lowest, found.lowest);
-    all.highest = std::max(all.highest, found.highest);
+    all.ring.insert(all.ring.end(), found.ring.begin(), found.ring.end());
     all.steepest = std::max(all.steepest, found.steepest);
-    if (all.lowest <= value && value <= all.highest) return false;
   }
-  if (!(all.lowest <= all.highest)) return false;
+  if (all.ring.empty()) return false;
+  std::ranges::sort(all.ring);
+  constexpr double odd = 0.02;  // of the ring: where a wedge of such cells has become narrower than one, mixing goes on
+  const auto few = static_cast<std::size_t>(odd * static_cast<double>(all.ring.size()));
+  all.lowest = all.ring[few];
+  all.highest = all.ring[all.ring.size() - 1 - few];
+  if (all.lowest <= value && value <= all.highest) return false;
   const double next = value < all.lowest ? all.lowest : all.highest, jump = std::abs(next - value);
-  constexpr double step_share = 0.25;  // of the jump, from a cell to the next; on a slope it is a seventh
   if (!(jump > least_step(heights, jump_share, all)) || all.steepest < step_share * jump) return false;
   refuse_unless_accepted(
       "fill-value",
       {fmt::format("{}: {} cells hold {:g} exactly, the first at {}", file.string(), cells, value,
                    place_in(heights.grid, first)),
-       fmt::format("seven to nine cells away no height is nearer than {:g} m, with others between: a value that stands "
-                   "for missing cells, mixed with heights by resampling; or a lake or roof behind walls on all sides",
-                   next),
+       fmt::format(
+           "seven to nine cells away hardly any height is nearer than {:g} m, with others between: a value that stands "
+           "for missing cells, mixed with heights by resampling; or a lake or roof behind walls on all sides",
+           next),
        mend_of_mixed(file.string(), value) + ". Where it is ground, all is well"},
       {{"cells", static_cast<double>(cells), "1"}, {"value", value, "m"}, {"jump", jump, "m"}});
   return true;
@@ -179,7 +187,7 @@ bool judge_mixed_rims(const Raster& heights, const std::filesystem::path& file) 
     const double jump = least_step(heights, 1, found);
     for (const std::size_t c : found.rim) {
       const double off = std::max(found.lowest - heights.values[c], heights.values[c] - found.highest);
-      if (!(off > jump)) continue;
+      if (!(off > jump) || found.steepest < step_share * off) continue;
       ++cells;
       if (off > far) far = off, worst = c;
     }
