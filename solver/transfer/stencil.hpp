@@ -23,9 +23,10 @@ struct Stencil {
   Real slope_x = 0, slope_y = 0;                        ///< of the terrain at the point
 
   TALUS_HD Stencil(const GridView<Real>& grid, const ParticleView<Real>& points, int p) {
-    const Real fx = before_wall(grid, points.cell[0][p], grid.walls.east, points.offset[0][p]),
-               fy = before_wall(grid, points.cell[1][p], grid.walls.north, points.offset[1][p]),
-               fz = points.offset[2][p];
+    const Real lowest = grid.lowest_weighed;
+    const Range x_range{grid.walls.west, grid.walls.east, lowest}, y_range{grid.walls.south, grid.walls.north, lowest};
+    const Real fx = before_walls(points.cell[0][p], x_range, points.offset[0][p]),
+               fy = before_walls(points.cell[1][p], y_range, points.offset[1][p]), fz = points.offset[2][p];
     Real half[3] = {};
     if constexpr (Shape::averaged) {
       for (int a = 0; a < 3; ++a) half[a] = points.half_extent(p, a, least_half(grid));
@@ -38,11 +39,8 @@ struct Stencil {
     Shape::weigh(fy, half[1], wy, gy);
     Shape::weigh(fz, half[2], wz, gz);
     if (grid.mapping == Mapping::terrain_following) measure_slope(grid);
-    const Real lowest = grid.lowest_weighed;
-    near_x = Real(ax) -
-             beside(points.cell[0][p], {grid.walls.west, grid.walls.east, lowest}, fx, half[0], {wx, gx, &edge_x});
-    near_y = Real(ay) -
-             beside(points.cell[1][p], {grid.walls.south, grid.walls.north, lowest}, fy, half[1], {wy, gy, &edge_y});
+    near_x = Real(ax) - beside(points.cell[0][p], x_range, fx, half[0], {wx, gx, &edge_x});
+    near_y = Real(ay) - beside(points.cell[1][p], y_range, fy, half[1], {wy, gy, &edge_y});
     near_z = Real(az) - beside(points.cell[2][p], {0, WallNodes::far, lowest}, fz, half[2], {wz, gz, &edge_z});
   }
 
@@ -68,12 +66,6 @@ struct Stencil {
   }
 
  private:
-  /// The offset of a point in a cell, where it is not on the very node of a wall that ends the hats there: those have
-  /// the wall's node and the one before it, as on the opposite wall.
-  TALUS_HD static Real before_wall(const GridView<Real>& grid, int cell, int wall, Real offset) {
-    const bool on_wall = width == 2 && cell == wall && !(offset < Real(0)) && grid.lowest_weighed > Real(0);
-    return on_wall ? Real(-1e-6) : offset;  // of which weights see no more than `lowest_weighed`
-  }
   /// The least half of a side of a box [cells]: boxes shrink no further in explicit steps, which have to be shorter the
   /// smaller they are; and never to nothing.
   TALUS_HD static Real least_half(const GridView<Real>& grid) {
@@ -86,6 +78,14 @@ struct Stencil {
     int first, last;
     Real lowest;
   };
+  /// The offset of a point in a cell. On a wall's node, and behind it, where explicit steps leave points for a while,
+  /// hats have that node and the one before it.
+  TALUS_HD static Real before_walls(int cell, const Range& range, Real offset) {
+    if (width != 2 || !(range.lowest > Real(0))) return offset;
+    if (cell == range.first && offset < Real(0)) return Real(0);
+    if (cell == range.last && !(offset < Real(0))) return Real(-1e-6);  // of which weights see no more than `lowest`
+    return offset;
+  }
   /// The weights of one direction, their slopes, and whether they are those beside an edge.
   struct Weights {
     Real *weight, *slope;

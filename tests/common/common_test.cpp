@@ -77,8 +77,8 @@ TEST(TextEncoding, knows_wide_text_by_its_mark_or_its_zeros) {
   EXPECT_EQ(wide_encoding("\xff\xfe\0\0"s), "UTF-32");
   EXPECT_EQ(wide_encoding("n\0a\0m\0e\0"s), "UTF-16LE");
   EXPECT_EQ(wide_encoding("\0n\0a\0m\0e"s), "UTF-16BE");
-  for (const auto& other :
-       {"name,t\n1,2"s, "SQLite format 3\0"s, "\0\0\x27\x0a\0\0\0\0"s, "\0\x41\0\x52\0\x1b\0\x60\0\x07"s, "II*\0\x08\0\0\0"s, ""s, "a\0"s})
+  for (const auto& other : {"name,t\n1,2"s, "SQLite format 3\0"s, "\0\0\x27\x0a\0\0\0\0"s,
+                            "\0\x41\0\x52\0\x1b\0\x60\0\x07"s, "II*\0\x08\0\0\0"s, ""s, "a\0"s})
     EXPECT_EQ(wide_encoding(other), "") << other;
 }
 

@@ -79,6 +79,32 @@ TYPED_TEST(Stencils, find_the_nodes_where_the_grid_stores_them) {
   }
 }
 
+TYPED_TEST(Stencils, beside_walls_are_mirror_images_with_no_weight_behind) {
+  const SmallGrid grid;
+  GridView<double> view = grid.view();
+  view.walls.west = 2;
+  view.walls.east = 5;
+  view.lowest_weighed = 0.1;
+  for (const double away : {-0.2, -0.05, 0.0, 0.05, 0.3}) {  // behind, on and before the wall
+    OnePoint west, east;
+    west.cell[0] = view.walls.west;
+    west.offset[0] = away;
+    east.cell[0] = view.walls.east;
+    east.offset[0] = -away;
+    const Stencil<double, TypeParam> a(view, west.view(), 0), b(view, east.view(), 0);
+    const auto weight = [&](const auto& s, int node) {
+      return node >= s.i && node < s.i + TypeParam::width ? s.wx[node - s.i] : 0.0;
+    };
+    for (int inward = -2; inward <= 2; ++inward) {
+      EXPECT_NEAR(weight(a, view.walls.west + inward), weight(b, view.walls.east - inward), 1e-5) << away;
+      if (inward < 0) {
+        EXPECT_EQ(weight(a, view.walls.west + inward), 0) << away;
+      }
+    }
+    EXPECT_NEAR(a.near_x, -(b.near_x + TypeParam::width - 1), 1e-5) << away;
+  }
+}
+
 /// How alone a point is among columns of these masses, by their places in its weights.
 double alone(OnePoint point, const std::function<double(const Stencil<double, Quadratic>&, int, int)>& mass) {
   const SmallGrid grid;
