@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 
@@ -78,7 +79,7 @@ struct Around {
 
 /// Of a group of `marked` cells; `distance` is 0 everywhere and left so.
 Around around_group(const Raster& heights, const std::vector<char>& marked,
-                    const std::vector<std::array<int, 2>>& group, std::vector<char>& distance) {
+                    const std::vector<std::array<int, 2>>& group, std::vector<std::uint8_t>& distance) {
   constexpr int mixed = 6, looked_at = 9;
   const MapGrid& grid = heights.grid;
   std::vector<std::size_t> seen;
@@ -90,7 +91,7 @@ Around around_group(const Raster& heights, const std::vector<char>& marked,
     if (away > looked_at) continue;
     for (const std::size_t c : around(grid, seen[n])) {
       if (distance[c] != 0 || marked[c]) continue;
-      distance[c] = static_cast<char>(away + 1);
+      distance[c] = static_cast<std::uint8_t>(away + 1);
       seen.push_back(c);
       const double z = heights.values[c], step = std::abs(z - heights.values[seen[n]]);
       if (step > found.steepest) found.steepest = step;  // false beside missing cells
@@ -134,7 +135,8 @@ double least_step(const Raster& heights, double span_share, const Around& around
 /// A value that four cells or more hold exactly, all of them far below or above all that lies around: ground slopes
 /// somewhere to its lakes and from its roofs. Returns whether there is one.
 bool judge_walled_plateau(const Raster& heights, const std::filesystem::path& file, double value) {
-  std::vector<char> marked(heights.values.size()), distance(heights.values.size());
+  std::vector<char> marked(heights.values.size());
+  std::vector<std::uint8_t> distance(heights.values.size());
   std::size_t cells = 0, first = 0;
   for (std::size_t i = 0; i < marked.size(); ++i) {
     marked[i] = heights.values[i] == value;
@@ -174,7 +176,8 @@ bool judge_walled_plateau(const Raster& heights, const std::filesystem::path& fi
 
 /// Cells beside missing ones that lie far below or above all that lies further out. Returns whether there are.
 bool judge_mixed_rims(const Raster& heights, const std::filesystem::path& file) {
-  std::vector<char> marked(heights.values.size()), distance(heights.values.size());
+  std::vector<char> marked(heights.values.size());
+  std::vector<std::uint8_t> distance(heights.values.size());
   for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = std::isnan(heights.values[i]);
   std::vector<char> left = marked;
   std::size_t cells = 0, worst = 0;
