@@ -48,7 +48,7 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  Verbosity verbosity = Verbosity::normal;  ///< lines below it are dropped
+  Verbosity verbosity = Verbosity::normal;  ///< lines below it are not shown
   int threads = 0;                          ///< to use at most; 0: usable_threads()
   bool network = false;                     ///< inputs may name places on a network
 

@@ -202,8 +202,7 @@ bool judge_mixed_rims(const Raster& heights, const std::filesystem::path& file) 
                    "nine cells away, the worst at {}: {:.6g} m",
                    file.string(), cells, far, place_in(heights.grid, worst), heights.values[worst]),
        "a value that stands for missing cells was mixed with heights by resampling; or a wall of that height hides "
-       "what "
-       "is missing",
+       "what is missing, or heights are in another unit",
        mend_of_mixed(file.string(), -9999) + ". Where it is a wall, all is well"},
       {{"cells", static_cast<double>(cells), "1"}, {"worst", far, "m"}});
   return true;
