@@ -104,10 +104,12 @@ std::string_view wide_encoding(std::string_view start) {
   constexpr std::size_t least_pairs = 4, most_pairs = 32;
   const std::size_t pairs = std::min(start.size() / 2, most_pairs);
   if (pairs < least_pairs) return "";
-  const auto is_plain = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\n' || c == '\r'; };
+  const auto is_text = [](unsigned char c) {
+    return (c >= ' ' && c <= '~') || c >= 0xA0 || c == '\t' || c == '\n' || c == '\r';
+  };
   const auto all = [&](std::size_t zero) {  // heights as binary integers have zeros between bytes too
     for (std::size_t n = 0; n < 2 * pairs; ++n)
-      if (n % 2 == zero ? start[n] != '\0' : !is_plain(start[n])) return false;
+      if (n % 2 == zero ? start[n] != '\0' : !is_text(static_cast<unsigned char>(start[n]))) return false;
     return true;
   };
   return all(1) ? "UTF-16LE" : all(0) ? "UTF-16BE" : "";

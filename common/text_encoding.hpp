@@ -19,7 +19,7 @@ std::string as_utf8(std::string_view text);
 std::string as_cp1252(std::string_view utf8);
 
 /// "UTF-16", "UTF-16LE", "UTF-16BE" or "UTF-32", as iconv calls it, where a file that begins with these bytes holds
-/// such text: by its byte-order mark, or by every second of its first bytes being zero and the others plain letters,
+/// such text: by its byte-order mark, or by every second of its first bytes being zero and the others letters,
 /// signs or blanks. Empty for any other.
 std::string_view wide_encoding(std::string_view start);
 
