@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/error.hpp"
@@ -13,6 +12,7 @@
 #include "common/stage/findings.hpp"
 #include "preprocess/survey/change.hpp"
 #include "preprocess/survey/survey.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -78,20 +78,19 @@ double larger_of(const SurveyedSlide& slide) {
 void warn_of_cut_deposit(const Raster& deposit) {
   const MapGrid& grid = deposit.grid;
   std::size_t cells = 0;
-  std::array<int, 2> first{};
+  std::size_t first = 0;
   each_cell(grid, [&](int column, int row) {
     if (!(deposit.at(column, row) > 0)) return;
     bool ends = column == 0 || row == 0 || column + 1 == grid.columns || row + 1 == grid.rows;
     each_near(grid, {column, row}, 1, [&](int c, int r) { ends = ends || std::isnan(deposit.at(c, r)); });
-    if (ends && cells++ == 0) first = {column, row};
+    if (ends && cells++ == 0) first = grid.index(column, row);
   });
   if (cells == 0) return;
   warn("deposit-cut",
        fmt::format(
-           "the deposit reaches the edge of what both surveys hold in {} cells, the first at x {:.1f}, y {:.1f}: "
-           "what lies beyond is in no volume, error, run-out or score. Give surveys that reach further, or a "
-           "larger extent_m",
-           cells, grid.x(first[0]), grid.y(first[1])),
+           "the deposit reaches the edge of what both surveys hold in {} cells, the first at {}: what lies beyond "
+           "is in no volume, error, run-out or score. Give surveys that reach further, or a larger extent_m",
+           cells, place_of(grid, first)),
        {{"cells", static_cast<double>(cells), "1"}});
 }
 

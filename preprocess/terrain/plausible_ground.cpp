@@ -18,6 +18,7 @@
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/regions.hpp"
 #include "preprocess/terrain/height_statistics.hpp"
+#include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -113,11 +114,6 @@ constexpr double least_jump = 50, jump_share = 0.25;
 
 constexpr double step_share = 0.25;  // of a jump, from a cell to the next; on a slope it is a seventh
 
-std::string place_in(const MapGrid& grid, std::size_t cell) {
-  const auto [column, row] = grid.cell_of(cell);
-  return fmt::format("x {:.1f}, y {:.1f}", grid.x(column), grid.y(row));
-}
-
 /// The mend of values that stand for missing cells and were mixed with heights.
 std::string mend_of_mixed(const std::string& file, double value) {
   return fmt::format(
@@ -164,7 +160,7 @@ bool judge_walled_plateau(const Raster& heights, const std::filesystem::path& fi
   refuse_unless_accepted(
       "fill-value",
       {fmt::format("{}: {} cells hold {:g} exactly, the first at {}", file.string(), cells, value,
-                   place_in(heights.grid, first)),
+                   place_of(heights.grid, first)),
        fmt::format(
            "seven to nine cells away hardly any height is nearer than {:g} m, with others between: a value that stands "
            "for missing cells, mixed with heights by resampling; or a lake or roof behind walls on all sides",
@@ -200,7 +196,7 @@ bool judge_mixed_rims(const Raster& heights, const std::filesystem::path& file) 
       "mixed-voids",
       {fmt::format("{}: beside cells without elevation {} cells lie up to {:.4g} m below or above all that is seven to "
                    "nine cells away, the worst at {}: {:.6g} m",
-                   file.string(), cells, far, place_in(heights.grid, worst), heights.values[worst]),
+                   file.string(), cells, far, place_of(heights.grid, worst), heights.values[worst]),
        "a value that stands for missing cells was mixed with heights by resampling; or a wall of that height hides "
        "what is missing, or heights are in another unit",
        mend_of_mixed(file.string(), -9999) + ". Where it is a wall, all is well"},
@@ -233,12 +229,10 @@ bool judge_fill_values(const Raster& heights, const std::filesystem::path& file)
   const auto judge = [&](const Plateau& p, double other_end) {
     const double jump = std::abs(p.next - p.value), span = std::abs(other_end - p.next);
     if (p.cells < fewest_alike || !(jump > std::max(least_jump, jump_share * span))) return false;
-    const auto columns = static_cast<std::size_t>(heights.grid.columns);
     refuse_unless_accepted(
         "fill-value",
-        {fmt::format("{}: {} cells hold {:g} exactly, the first at x {:.1f}, y {:.1f}", file.string(), p.cells, p.value,
-                     heights.grid.x(static_cast<int>(p.first % columns)),
-                     heights.grid.y(static_cast<int>(p.first / columns))),
+        {fmt::format("{}: {} cells hold {:g} exactly, the first at {}", file.string(), p.cells, p.value,
+                     place_of(heights.grid, p.first)),
          fmt::format("the nearest other height is {:g} m, all others span {:.4g} m: a value that stands for missing "
                      "cells, which the file does not declare as nodata, or a level of another unit or datum",
                      p.next, span),
@@ -337,8 +331,7 @@ void judge_thickness(const Raster& thickness, const std::string& name) {
   const std::string causes =
       "slides are seldom thicker than a fifth of that. A block that leaves a wall may be; else the thickness is in "
       "another unit (centimetres, feet), an elevation, or a number that marks cells (255, a value for missing ones), "
-      "or "
-      "two surfaces do not share unit, place and datum";
+      "or two surfaces do not share unit, place and datum";
   const std::vector<FindingNumber> numbers{{"thickness", mean, "m"}, {"across", across, "m"}};
   if (mean <= refused_thick * across) return warn("thick-release", words + ": " + causes, numbers);
   refuse_unless_accepted("thick-release",
