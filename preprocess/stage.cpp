@@ -11,6 +11,7 @@
 
 #include "common/domain/domain.hpp"
 #include "common/domain/threads.hpp"
+#include "common/ensemble/fit_options.hpp"
 #include "common/ensemble/used.hpp"
 #include "common/gis/crs.hpp"
 #include "common/gis/local_only.hpp"
@@ -188,7 +189,9 @@ std::string template_of_tables() {
          "\n# Many runs instead of one: members = 0 is none. All stages read this table.\n" +
          recipe::to_toml(EnsembleOptions{}, "ensemble", true) +
          "\n# Many slides over one elevation model: outlines empty is none. All stages read this table.\n" +
-         recipe::to_toml(SlideOptions{}, "slides", true);
+         recipe::to_toml(SlideOptions{}, "slides", true) +
+         "\n# What talus fit changes until a run agrees with the survey.\n" +
+         recipe::to_toml(FitOptions{}, "fit", true);
 }
 
 /// The id of a domain; of level sets, which carry none, their SHA-256.

@@ -82,23 +82,39 @@ int check_scene(const Request& request);
 /// exit code. Throws DataError where one of the folders holds no run.
 int compare_runs(const std::filesystem::path& first, const std::filesystem::path& second, const Request& request);
 
+/// Two elevation models, or one and the outline of what may fail.
 struct NewScene {
-  std::filesystem::path before, after;
-  std::filesystem::path recipe;  ///< to be written
+  std::filesystem::path before, after;  ///< `after`: the second model, or the outline (a vector file)
+  std::filesystem::path recipe;         ///< to be written
   bool overwrite = false;
   std::vector<double> at = {};         ///< [easting, northing] in the slide; empty: it is found
   std::filesystem::path outline = {};  ///< of the slide's source; empty: it is found
   std::filesystem::path ignore = {};   ///< polygons whose change is not looked at
+  // How much is released within an outline; none: by its area.
+  std::optional<double> thickness = {};  ///< everywhere, vertical [m]
+  std::optional<double> volume = {};     ///< above a curved sliding surface [m3]
+  std::optional<double> depth = {};      ///< of a curved sliding surface, at most [m]
 };
 
-/// Compares the two models, proposes spacing, layers, friction and end time from what failed, and writes the recipe. It
-/// asks nothing. Returns 0. Throws DataError where the two models show no slide, or several that it might be, with what
-/// talus-preprocess says of them, and where the recipe is there already.
+/// Compares two models, or lays a release under the outline, proposes spacing, layers, friction and end time from what
+/// fails, and writes the recipe; of an outline with the doubts that maps of probability need. It asks nothing. Returns
+/// 0. Throws DataError where the two models show no slide, or several that it might be, with what talus-preprocess says
+/// of them, and where the recipe is there already; RecipeError: two amounts, or one beside two models.
 int new_scene(const NewScene& scene);
 
 /// Runs the stages that have to; prints the results of all on stdout. With request.plan it runs talus-preprocess alone
 /// and prints the plan of the solver. Returns the exit code of the stage that failed, or 0.
 int run_scene(const Request& request);
+
+/// Brings the stages up to date as run_scene() does, but prints nothing and keeps their log, up to the stage that
+/// fails.
+Said run_quietly(const Request& request);
+
+/// Changes the keys of [fit] from run to run (search()) until the run agrees with the survey, and prints a line each;
+/// OUT/fit.json keeps the runs, which a second call does not repeat. Writes the recipe of the best one beside the
+/// recipe, fitted.toml, and runs it. Returns the exit code of a stage that failed, or 0. Throws RecipeError: no key, or
+/// one that has no effect; DataError: no survey, a fitted.toml that a person wrote.
+int fit_scene(const Request& request);
 
 struct DataRequest {
   std::string name;             ///< of an example; empty: list them
@@ -153,9 +169,10 @@ struct Proposal {
 };
 
 /// Spacing: twenty cells across the release, but not finer than the models, unless eight need it. Layers: four and a
-/// half or more over the median thickness, none higher than a cell is wide. Bed: the angle at which the centre of mass
-/// went, or the usual Fahrboeschung. Inside: 1.4 times its tangent (material-laws.md). End: four times the way over
-/// the largest speed that the energy line allows, twice what a block takes that speeds up and slows down evenly.
+/// half or more over the median thickness, none higher than a cell is wide. Bed: 0.85 times the tangent at which the
+/// centre of mass went, or the usual Fahrboeschung. Inside: 1.4 times its tangent (material-laws.md). End: four times
+/// the way over the largest speed that the energy line allows, twice what a block takes that speeds up and slows down
+/// evenly.
 Proposal propose(const Slide& slide);
 
 }  // namespace talus::command

@@ -32,6 +32,8 @@ constexpr const char* footer =
     "  talus run recipe.toml --plan                       what the run takes: points, steps, time\n"
     "  talus new before.tif after.tif                     a first recipe: spacing, layers and end time from the "
     "release\n"
+    "  talus new dem.tif outline.gpkg --volume 2e5        the same of a slope that may fail, with its doubts\n"
+    "  talus fit recipe.toml                              the friction with which the run agrees with the survey\n"
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
     "  talus compare out-a out-b                          two runs beside one another: out-a/comparison.html\n"
     "  talus data cascade2021                             a public example, fetched and checked\n"
@@ -67,10 +69,13 @@ void declare_scene(CLI::App& app, Asked& asked) {
   app.add_option("--threads", asked.request.threads, "Threads to take at most")
       ->type_name("N")
       ->check(CLI::Range(1, 4096).description(""));
+  app.add_flag("--network", asked.request.network, "Let inputs name places on a network");
+}
+
+void declare_budget(CLI::App& app, Asked& asked) {
   app.add_flag_callback(
       "--budget", [&asked] { asked.request.set.emplace_back("ensemble.design=budget"); },
       "Run single changes of the recipe instead (design = \"budget\"): how far each doubt moves the deposit");
-  app.add_flag("--network", asked.request.network, "Let inputs name places on a network");
 }
 
 /// The request of a command over a scene, with its paths settled.
@@ -89,20 +94,30 @@ Request scene_request(const Asked& asked) {
 void declare(CLI::App& app, Asked& asked) {
   CLI::App* run = app.add_subcommand("run", "Run the stages of a scene whose results are not up to date");
   declare_scene(*run, asked);
+  declare_budget(*run, asked);
   run->add_flag("--plan", asked.request.plan,
                 "Prepare the domain and print points, memory, steps and the time to expect; run no solver");
   run->add_flag("--json", asked.json, "The log on stderr as lines of JSON: level, text, of progress the percent");
   run->callback([&] { asked.command = [&] { return run_scene(scene_request(asked)); }; });
   CLI::App* check = app.add_subcommand("check", "Every fault of all stages in one listing; writes nothing");
   declare_scene(*check, asked);
+  declare_budget(*check, asked);
   check->callback([&] { asked.command = [&] { return check_scene(scene_request(asked)); }; });
+  CLI::App* fit = app.add_subcommand(
+      "fit",
+      "Change the friction (or the keys of [fit]) from run to run until the run agrees with the survey; write\n"
+      "fitted.toml beside the recipe, and run it");
+  declare_scene(*fit, asked);
+  fit->callback([&] { asked.command = [&] { return fit_scene(scene_request(asked)); }; });
 }
 
 void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {
-  CLI::App* command =
-      app.add_subcommand("new", "Write a recipe for a slide from the elevation models before and after");
+  CLI::App* command = app.add_subcommand(
+      "new", "Write a recipe for a slide from the elevation models before and after, or from one and an outline");
   command->add_option("before", scene.before, "Elevation model from before the slide")->type_name("BEFORE")->required();
-  command->add_option("after", scene.after, "Elevation model from after it")->type_name("AFTER")->required();
+  command->add_option("after", scene.after, "Elevation model from after it, or the outline of what may fail (polygons)")
+      ->type_name("AFTER")
+      ->required();
   command->add_option("--recipe", scene.recipe, "File to be written (default: recipe.toml)")->type_name("FILE");
   auto* at = command->add_option("--at", scene.at, "A point in the slide, where it is not found (seed_m)")
                  ->type_name("X,Y")
@@ -111,6 +126,12 @@ void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {
   command->add_option("--outline", scene.outline, "Outline of its source (polygon)")->type_name("FILE")->excludes(at);
   command->add_option("--ignore", scene.ignore, "Polygons of ground to leave out: lakes, quarries, forest (ignore)")
       ->type_name("FILE");
+  command->add_option("--thickness", scene.thickness, "Of what fails within an outline, everywhere [m]")
+      ->type_name("M");
+  command->add_option("--volume", scene.volume, "Of what fails, above a curved sliding surface [m3]")->type_name("M3");
+  command
+      ->add_option("--depth", scene.depth, "Of such a surface, at most [m] (default: volume from the outline's area)")
+      ->type_name("M");
   command->add_flag("--overwrite", scene.overwrite, "Write over a recipe that is there already");
   command->callback([&] { asked.command = [&] { return new_scene(scene); }; });
 }

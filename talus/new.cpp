@@ -6,15 +6,21 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "common/domain/domain.hpp"
+#include "common/ensemble/member_table.hpp"
+#include "common/gis/features.hpp"
 #include "common/gis/raster_file.hpp"
 #include "common/recipe/dataset_name.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/stage/files.hpp"
+#include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/stage.hpp"
 
@@ -26,6 +32,9 @@ namespace {
 constexpr double sure_errors = 3;
 /// A release of fewer cells tells nothing of its shape.
 constexpr double fewest_released_cells = 9;
+/// H/L of a volume scatters by less than this factor (usual_reach.hpp); nobody has measured what a volume does that
+/// comes from an area of one inventory.
+constexpr double reach_factor = 2, volume_factor = 3, two_sided_95 = 1.96;
 
 fs::path whole(const fs::path& file) {
   if (const auto inside = dataset_name(file.string(), fs::current_path())) return inside->from(fs::current_path());
@@ -50,30 +59,45 @@ struct Reading {
   }
 };
 
-/// The tables that say which change is the slide; `file` writes the name of a file.
+/// The tables that say what fails; `file` writes the name of a file.
 template <class Name>
 std::string source_keys(const NewScene& scene, const std::vector<double>& place, const Name& file) {
   std::string text;
-  if (!scene.outline.empty())
+  if (scene.thickness) {
+    text += fmt::format("\n[[preprocess.release]]\npolygons = {}\nthickness_m = {}\n", file(scene.outline),
+                        recipe::toml_number(*scene.thickness));
+  } else if (!scene.outline.empty())
     text += fmt::format("\n[preprocess.source]\npolygon = {}\n", file(scene.outline));
   else if (!place.empty())
     text +=
         fmt::format("\n[preprocess.source]\nseed_m = [{:.2f}, {:.2f}]  # a point in it, which tells it from others\n",
                     place[0], place[1]);
+  for (const auto& [key, value] : {std::pair{"volume_m3", scene.volume}, {"depth_m", scene.depth}})
+    if (value)
+      text += fmt::format("\n[preprocess.source.sliding_surface]\n{} = {}\n", key, recipe::toml_number(*value));
   if (!scene.ignore.empty()) text += fmt::format("\n[preprocess.difference]\nignore = {}\n", file(scene.ignore));
   return text;
 }
 
+/// The keys that name the models; `file` writes the name of a file.
+template <class Name>
+std::string model_keys(const NewScene& scene, const Name& file) {
+  if (scene.thickness) return "base_dem = " + file(scene.before) + "\n";
+  return "before_dem = " + file(scene.before) + "\n" +
+         (scene.after.empty() ? "" : "after_dem = " + file(scene.after) + "\n");
+}
+
 std::string first_recipe(const NewScene& scene, const Reading& reading) {
   const auto file = [](const fs::path& path) { return recipe::toml_text(whole(path).string()); };
-  return fmt::format("[preprocess]\nbefore_dem = {}\nafter_dem = {}\n{}{}", file(scene.before), file(scene.after),
-                     reading.keys(), source_keys(scene, scene.at, file));
+  return "[preprocess]\n" + model_keys(scene, file) + reading.keys() + source_keys(scene, scene.at, file);
 }
 
 [[noreturn]] void refuse(const NewScene& scene, const std::string& why, const std::string& mend) {
-  throw DataError(Fault{fmt::format("{} and {}: no slide was found between them, so that no recipe was written",
-                                    scene.before.string(), scene.after.string()),
-                        why, mend});
+  const std::string what =
+      scene.after.empty()
+          ? fmt::format("{}: nothing could be released within {}", scene.before.string(), scene.outline.string())
+          : fmt::format("{} and {}: no slide was found between them", scene.before.string(), scene.after.string());
+  throw DataError(Fault{what + ", so that no recipe was written", why, mend});
 }
 
 /// The first stage on the two models alone, into a folder that goes again.
@@ -116,7 +140,9 @@ Reading compare_models(const NewScene& scene, const fs::path& folder) {
     refuse(scene, said.outcome.faults.back().what,
            "Name the slide by --at X,Y or --outline FILE, or mask what is none by --ignore FILE");
   refuse(scene, to_string(said.outcome.faults.back()),
-         "Look at both in a GIS: the first must be the ground before the slide, the second after it");
+         scene.after.empty()
+             ? "Look at both in a GIS: the outline must lie on the model"
+             : "Look at both in a GIS: the first must be the ground before the slide, the second after it");
 }
 
 struct Found {
@@ -176,7 +202,9 @@ std::string named(const fs::path& file, const fs::path& recipe) {
   return recipe::toml_text(near ? there.lexically_relative(folder).generic_string() : there.string());
 }
 
-std::string way_words(const Slide& s) {
+std::string way_words(const NewScene& scene, const Slide& s) {
+  if (scene.after.empty())
+    return "Nothing says how far it goes: friction is the usual one for the volume, with its scatter.";
   if (!s.has_deposit())
     return "The models show no deposit: friction is the usual one for the volume, the end a guess. Look at both.";
   return fmt::format("It fell {:.0f} m over {:.0f} m, H/L {:.2f}; its centre of mass went at {:.2f}.", s.drop, s.length,
@@ -189,14 +217,42 @@ std::string line(const std::string& key, const std::string& value, const std::st
 }
 
 std::string head(const NewScene& scene, const Slide& s) {
+  const bool two = !scene.after.empty();
   return fmt::format(
-      "# Written by talus new (Talus {}) from two elevation models. Every number is a proposal:\n"
+      "# Written by talus new (Talus {}) from {}. Every number is a proposal:\n"
       "# change what you know better. All keys with their meaning: talus-preprocess --template, and so on.\n"
       "#\n"
-      "# Found: {:.0f} m3 went down on {:.0f} m2, {:.0f} m wide, {:.3g} m thick (median by volume).\n"
+      "# {}: {:.0f} m3 {} on {:.0f} m2, {:.0f} m wide, {:.3g} m thick (median by volume).\n"
       "# {}\n"
       "[scene]\nname = \"{}\"\n\n",
-      version(), s.volume, s.area, s.width, s.median_thickness, way_words(s), scene_name(scene.recipe));
+      version(), two ? "two elevation models" : "an elevation model and an outline", two ? "Found" : "Released",
+      s.volume, two ? "went down" : "fail", s.area, s.width, s.median_thickness, way_words(scene, s),
+      scene_name(scene.recipe));
+}
+
+/// Of the bed [-].
+double coefficient_of(const Proposal& p) { return std::tan(p.bed_angle / 180 * std::numbers::pi); }
+
+/// [[ensemble.vary]] of a factor, or of a value, whose logarithm is normal.
+std::string lognormal(const std::string& key, double median, double deviation, const std::string& remark) {
+  const double mean = median * std::exp(deviation * deviation / 2);
+  return fmt::format(
+      "\n[[ensemble.vary]]                # {}\nkey = \"{}\"\ndistribution = \"lognormal\"\nmean = {:.3f}\n"
+      "deviation = {:.3f}\nlow = {:.3f}\nhigh = {:.3f}\n",
+      remark, key, mean, mean * std::sqrt(std::expm1(deviation * deviation)), median * std::exp(-3 * deviation),
+      median * std::exp(3 * deviation));
+}
+
+/// What is not known of a slope that may fail, for maps of probability.
+std::string doubts(const NewScene& scene, const Proposal& p) {
+  const double friction = std::log(reach_factor) / two_sided_95, volume = std::log(volume_factor) / two_sided_95;
+  std::string text = "\n# Maps of probability: talus run RECIPE --set ensemble.members=100\n[ensemble]\nmembers = 0\n";
+  text += lognormal("solve.base.friction_coefficient", coefficient_of(p), friction,
+                    fmt::format("19 of 20 within a factor of {:g}, as H/L scatters", reach_factor));
+  if (!scene.thickness && !scene.volume && !scene.depth)
+    text += lognormal(thickness_factor_key, 1, volume,
+                      fmt::format("a volume from an area: 19 of 20 within a factor of {:g}, assumed", volume_factor));
+  return text;
 }
 
 std::string recipe_text(const NewScene& scene, const Found& found, const Reading& reading) {
@@ -205,8 +261,7 @@ std::string recipe_text(const NewScene& scene, const Found& found, const Reading
   const auto file = [&](const fs::path& path) { return named(path, scene.recipe); };
   const auto number = [](double value) { return recipe::toml_number(value); };
   std::string text = head(scene, s);
-  text += "[preprocess]\nbefore_dem = " + named(scene.before, scene.recipe) +
-          "\nafter_dem = " + named(scene.after, scene.recipe) + "\n" + reading.keys() +
+  text += "[preprocess]\n" + model_keys(scene, file) + reading.keys() +
           source_keys(scene, scene.at.empty() ? found.place : scene.at, file) + "\n[preprocess.grid]\n";
   text += line("spacing_m", number(p.spacing), fmt::format("{:.0f} cells across the release", p.cells_across));
   text += line("layer_height_m", number(p.layer_height),
@@ -219,30 +274,67 @@ std::string recipe_text(const NewScene& scene, const Found& found, const Reading
   text += line("friction_angle_deg", number(p.internal_angle), "inside the mass: 1.4 times the bed's, as tangents");
   text += line("stiffness", "\"auto\"", "the lowest modulus that leaves the flow unchanged");
   text += "\n[solve.base]\nlaw = \"coulomb\"\n";
-  text += line("friction_angle_deg", number(p.bed_angle),
-               s.has_deposit() ? "the angle at which its centre of mass went: a first guess"
-                               : "usual for this volume (Scheidegger 1973, Corominas 1996)");
+  if (scene.after.empty())
+    text += line("friction_coefficient", fmt::format("{:.3f}", coefficient_of(p)),
+                 "H/L usual for this volume (Scheidegger 1973, Corominas 1996)");
+  else
+    text += line("friction_angle_deg", number(p.bed_angle),
+                 s.has_deposit() ? "0.85 of the tangent at which its centre of mass went: a first guess"
+                                 : "usual for this volume (Scheidegger 1973, Corominas 1996)");
   text += "\n[postprocess]\n";
   text += line("friction_is", "\"guessed\"", "once it is: \"given\" (from elsewhere), or \"fitted\" to this event");
+  if (scene.after.empty()) return text + doubts(scene, p);
   text += "\n[postprocess.survey]\n";
   text += line("from_preprocess", "true", "scored against what rose between the two models");
   return text;
 }
 
+/// Whether a file holds polygons; elevation models, tables of points among them, hold none.
+bool holds_polygons(const fs::path& file) {
+  const RedirectLog log([](LogLevel, const std::string&) {});
+  const Findings found("new", {}, Findings::Log::kept_back);
+  try {
+    return !read_polygons(file, "").empty();
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+/// Puts the outline in its place where the second file is one.
+NewScene settled(NewScene scene) {
+  if (holds_polygons(scene.after)) {
+    if (!scene.outline.empty() || !scene.at.empty() || !scene.ignore.empty())
+      throw RecipeError(Fault{fmt::format("{}: no elevation model", scene.after.string()),
+                              "--at, --outline and --ignore say which change between two models is the slide",
+                              "Give two elevation models, or leave them out"});
+    std::swap(scene.outline, scene.after);
+  }
+  const int amounts = scene.thickness.has_value() + scene.volume.has_value() + scene.depth.has_value();
+  if (amounts > 1 || (amounts > 0 && !scene.after.empty()))
+    throw RecipeError(Fault{"--thickness, --volume, --depth: more than one, or beside two elevation models",
+                            "each says by itself how much is released, as two models do", "Leave the others out"});
+  return scene;
+}
+
 }  // namespace
 
-int new_scene(const NewScene& scene) {
+int new_scene(const NewScene& asked) {
+  const NewScene scene = settled(asked);
   if (fs::exists(scene.recipe) && !scene.overwrite)
     throw DataError(Fault{scene.recipe.string() + ": it is there already", "nothing is written over",
                           "Name another file with --recipe FILE, or give --overwrite"});
   const TemporaryFolder folder("talus-new");
-  for (const fs::path& file : {scene.before, scene.after}) show_path_as(whole(file), file.string(), "");
+  for (const fs::path& file : {asked.before, asked.after}) show_path_as(whole(file), file.string(), "");
   const Reading reading = compare_models(scene, folder.path());
   const Found found = find_slide(scene, folder.path() / "out");
   if (const fs::path parent = scene.recipe.parent_path(); !parent.empty()) make_folder(parent);
   write_text(scene.recipe, recipe_text(scene, found, reading));
-  log_info(fmt::format("{:.0f} m3 failed. {}", found.slide.volume, way_words(found.slide)));
-  log_info(fmt::format("Read it, then: talus run {}", scene.recipe.string()));
+  log_info(fmt::format("{:.0f} m3 {}. {}", found.slide.volume, scene.after.empty() ? "fail" : "failed",
+                       way_words(scene, found.slide)));
+  const std::string recipe = scene.recipe.string();
+  log_info(scene.after.empty()
+               ? fmt::format("Read it, then: talus run {0}; talus run {0} --set ensemble.members=100", recipe)
+               : fmt::format("Read it, then: talus run {0}; talus fit {0} finds the friction of this deposit", recipe));
   print_results({scene.recipe});
   return 0;
 }

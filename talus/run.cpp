@@ -144,13 +144,18 @@ class BriefStage {
   Verbosity before_;
 };
 
-int bring_up_to_date(const Request& request, const std::string& stage) {
+/// The call that makes a stage's results where they are outdated.
+StageCall outdated_call(const Request& request, const std::string& stage) {
   stop_if_interrupted("running the stages");
-  const BriefStage brief(stage);
   StageCall call = call_of(request, stage);
   call.if_outdated = true;
   if (stage == "solve") call.flags.emplace_back("--resume", "");
-  return run_one(stage, call);
+  return call;
+}
+
+int bring_up_to_date(const Request& request, const std::string& stage) {
+  const BriefStage brief(stage);
+  return run_one(stage, outdated_call(request, stage));
 }
 
 int print_plan(const Request& request) {
@@ -215,6 +220,17 @@ int run_scene(const Request& request) {
   if (!inner && !context().logs_to_terminal())
     log_info(fmt::format("{}: {}", recipe.scene_name(), page_in(request.out).string()));
   return 0;
+}
+
+Said run_quietly(const Request& request) {
+  Said all;
+  for (const std::string& stage : needed_stages(request, recipe::Recipe(request.recipe, request.set))) {
+    Said said = call_quietly(stage, outdated_call(request, stage));
+    all.outcome = std::move(said.outcome);
+    all.lines.insert(all.lines.end(), said.lines.begin(), said.lines.end());
+    if (all.outcome.code != ExitCode::success) break;
+  }
+  return all;
 }
 
 int compare_runs(const fs::path& first, const fs::path& second, const Request& request) {

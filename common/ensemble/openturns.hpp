@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,6 +54,14 @@ struct SobolIndices {
 
 using Lists = std::vector<std::vector<double>>;
 
+/// Where the largest value of a function is looked for.
+struct Region {
+  std::vector<double> from;       ///< the first place
+  std::vector<double> low, high;  ///< bounds of each coordinate
+  double radius = 1;              ///< of the first steps, in every coordinate
+  int most_calls = 0;             ///< of the function
+};
+
 class Library {
  public:
   virtual ~Library() = default;
@@ -80,6 +89,11 @@ class Library {
   /// Standardised coefficients of a linear regression of the output's ranks on the inputs'. Empty where inputs depend
   /// linearly.
   virtual std::vector<double> rank_regression(const Lists& inputs, const std::vector<double>& outputs) const = 0;
+
+  /// Looks for the largest value of a function of two coordinates or more by COBYLA (Powell 1994), which asks for no
+  /// derivative; the steps end at a tenth of the radius. What the function throws is thrown again.
+  virtual void maximise(const std::function<double(const std::vector<double>&)>& function,
+                        const Region& region) const = 0;
 };
 
 /// Loads the module at the first call. Throws DataError where it or a library below it is missing.

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // libtalus-openturns.so. It holds nothing of Talus but this file, so that no global of it is there twice.
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <openturns/BetaMuSigma.hxx>
+#include <openturns/Cobyla.hxx>
 #include <openturns/ComposedDistribution.hxx>
 #include <openturns/CorrelationAnalysis.hxx>
 #include <openturns/CorrelationMatrix.hxx>
+#include <openturns/EvaluationImplementation.hxx>
 #include <openturns/GeometricProfile.hxx>
 #include <openturns/LHSExperiment.hxx>
 #include <openturns/LogNormalMuSigma.hxx>
@@ -14,6 +18,7 @@
 #include <openturns/MonteCarloExperiment.hxx>
 #include <openturns/Normal.hxx>
 #include <openturns/NormalCopula.hxx>
+#include <openturns/OptimizationProblem.hxx>
 #include <openturns/RandomGenerator.hxx>
 #include <openturns/SaltelliSensitivityAlgorithm.hxx>
 #include <openturns/SimulatedAnnealingLHS.hxx>
@@ -105,6 +110,30 @@ OT::Sample drawn(Design design, std::size_t count, std::size_t keys) {
   }
 }
 
+/// A function for an optimiser, whose C code lets no exception through: the first one is kept.
+class Called : public OT::EvaluationImplementation {
+ public:
+  Called(const std::function<double(const std::vector<double>&)>& function, std::size_t coordinates,
+         std::exception_ptr& thrown)
+      : function_(function), coordinates_(coordinates), thrown_(thrown) {}
+  Called* clone() const override { return new Called(*this); }
+  OT::UnsignedInteger getInputDimension() const override { return coordinates_; }
+  OT::UnsignedInteger getOutputDimension() const override { return 1; }
+  OT::Point operator()(const OT::Point& point) const override {
+    if (!thrown_) try {
+        return OT::Point(1, function_(list_of(point)));
+      } catch (...) {
+        thrown_ = std::current_exception();
+      }
+    return OT::Point(1, 0.0);
+  }
+
+ private:
+  const std::function<double(const std::vector<double>&)>& function_;
+  std::size_t coordinates_;
+  std::exception_ptr& thrown_;
+};
+
 class Module : public Library {
  public:
   AnyLaw uniform(double low, double high) const override { return law(OT::Uniform(low, high)); }
@@ -179,6 +208,24 @@ class Module : public Library {
     } catch (const OT::Exception&) {
       return {};
     }
+  }
+
+  void maximise(const std::function<double(const std::vector<double>&)>& function,
+                const Region& region) const override {
+    constexpr double last_radius = 0.1;  // over the first
+    std::exception_ptr thrown;
+    OT::OptimizationProblem problem(OT::Function(Called(function, region.from.size(), thrown)));
+    problem.setMinimization(false);
+    problem.setBounds(OT::Interval(point_of(region.low), point_of(region.high)));
+    OT::Cobyla algorithm(problem, region.radius);
+    algorithm.setStartingPoint(point_of(region.from));
+    algorithm.setMaximumEvaluationNumber(static_cast<OT::UnsignedInteger>(region.most_calls));
+    algorithm.setMaximumAbsoluteError(last_radius * region.radius);
+    try {
+      algorithm.run();
+    } catch (const OT::Exception&) {  // it gives up where the calls are used up
+    }
+    if (thrown) std::rethrow_exception(thrown);
   }
 };
 

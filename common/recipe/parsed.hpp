@@ -23,8 +23,8 @@ struct Recipe::Parsed {
 };
 
 /// The tables a recipe may hold.
-inline constexpr std::string_view known_tables[] = {"scene",       "preprocess", "solve",
-                                                    "postprocess", "ensemble",   "slides"};
+inline constexpr std::string_view known_tables[] = {"scene",    "preprocess", "solve", "postprocess",
+                                                    "ensemble", "slides",     "fit"};
 
 /// "recipe.toml:12:3", or "--set key=value" where the value was given so
 std::string place(const std::string& file, const toml::source_region& source);

@@ -178,7 +178,7 @@ class Recipe {
 
   /// Read table `stage` into options. All faults at once: unknown keys (with "did you mean"), wrong types, values out
   /// of range, each with line and column; then what find_unmet() adds. Throws RecipeError if there is any.
-  /// A top-level table other than scene, preprocess, solve, postprocess, ensemble and slides is unknown.
+  /// A top-level table other than scene, preprocess, solve, postprocess, ensemble, slides and fit is unknown.
   template <class Options>
   Options read(std::string_view stage) const {
     Options options;

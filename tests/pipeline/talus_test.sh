@@ -331,6 +331,32 @@ test_new_writes_a_recipe_that_runs_through() {
   done
 }
 
+# One model and an outline: by its area, a volume, a depth or a thickness; with doubts that an ensemble draws from.
+test_new_writes_a_recipe_of_a_slope_that_may_fail() {
+  local samples=$TALUS_SOURCE/data_samples/valley
+  local new=("$bin/talus" new "$samples/before_dem.tif" "$samples/source.geojson" --recipe one/recipe.toml --overwrite)
+  local amount
+  for amount in "--volume 150000" "--depth 20" "--thickness 8" ""; do
+    # shellcheck disable=SC2086  # an option and its value
+    expect_exit 0 "${new[@]}" $amount
+    expect_words 'friction is the usual one for the volume'
+    expect_exit 0 "$bin/talus" check one/recipe.toml
+    expect_words 'recipe.toml: no faults'
+    [[ $amount != *volume* ]] || expect_words 'no faults, no warnings'
+  done
+  grep -q 'Released: 131105 m3' one/recipe.toml || fail "the volume is not that of the area: $(head -4 one/recipe.toml)"
+  expect_exit 0 "$bin/talus" run one/recipe.toml --on cpu --set ensemble.members=3 --set solve.end_time_s=2
+  [[ -s one/out/probability.nc ]] || fail "no probabilities"
+  head -1 one/out/members.csv | grep -q 'solve.base.friction_coefficient.*preprocess.thickness_factor' ||
+    fail "friction and volume do not vary: $(head -1 one/out/members.csv)"
+  expect_exit 2 "${new[@]}" --volume 150000 --depth 3
+  expect_words '--thickness, --volume, --depth: more than one'
+  expect_exit 2 "${new[@]}" --at 1,2
+  expect_words '--at, --outline and --ignore say which change between two models is the slide'
+  expect_exit 2 "$bin/talus" new "$samples/before_dem.tif" "$samples/after_dem.tif" --recipe two.toml --depth 3
+  expect_words 'beside two elevation models'
+}
+
 test_new_refuses_politely_what_is_no_slide() {
   scene
   expect_exit 3 "$bin/talus" new --recipe new.toml before.asc before.asc

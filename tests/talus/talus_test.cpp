@@ -4,59 +4,17 @@
 #include <cmath>
 #include <thread>
 
-#include "common/stage/context.hpp"
-#include "talus/commands.hpp"
-#include "tests/common/scratch.hpp"
+#include "tests/talus/bowl.hpp"
 
 namespace talus::command {
 namespace {
 
 using test::holds;
+using test::Listener;
+using test::run_in;
+using test::RunInProcess;
 
 namespace fs = std::filesystem;
-
-/// A bowl of 20 x 20 cells of 10 m in which a block of 4 x 4 cells, 4 m thick, fails.
-struct RunInProcess : test::InScratch {
-  RunInProcess() {
-    write_grid("before.asc", 0);
-    write_grid("after.asc", 4);
-    scratch.write("recipe.toml",
-                  "[preprocess]\nbefore_dem = \"before.asc\"\nafter_dem = \"after.asc\"\n[preprocess.source]\n"
-                  "seed_m = [500045, 5000105]\n[preprocess.grid]\n"
-                  "layer_height_m = 2.0\n[solve]\nend_time_s = 1.0\n[postprocess]\noutputs = []\n");
-  }
-  void write_grid(const std::string& name, double depth) const {
-    std::ofstream file(scratch / name);
-    file << "ncols 20\nnrows 20\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\nNODATA_value -9999\n";
-    for (int j = 19; j >= 0; --j)
-      for (int i = 0; i < 20; ++i) {
-        const double x = 10 * i - 95, y = 10 * j - 95;
-        const bool fails = i >= 3 && i < 7 && j >= 8 && j < 12;
-        file << 0.004 * (x * x + y * y) - (fails ? depth : 0) << (i == 19 ? "\n" : " ");
-      }
-  }
-  Request request(const std::string& out) const {
-    return {.recipe = scratch / "recipe.toml", .out = scratch / out, .shown = scratch / out, .on = "cpu"};
-  }
-};
-
-/// A context that keeps its log.
-struct Listener {
-  std::string text;
-  std::function<void(const std::string&)> heard = [](const std::string&) {};
-  Context own{[this](LogLevel, const std::string& line) {
-    text += line + "\n";
-    heard(line);
-  }};
-};
-
-int run_in(Listener& listener, const Request& request) {
-  const BindContext bind(listener.own);
-  testing::internal::CaptureStdout();
-  const int code = run_scene(request);
-  testing::internal::GetCapturedStdout();
-  return code;
-}
 
 TEST_F(RunInProcess, runs_what_is_outdated_and_nothing_else) {
   Listener first, second;
