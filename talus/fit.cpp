@@ -87,9 +87,9 @@ std::vector<FitKey> keys_to_fit(const FitOptions& options, const std::vector<rec
   if (names.empty()) names.push_back(friction_key(known));
   std::vector<FitKey> keys;
   for (std::size_t n = 0; n < names.size(); ++n) {
-    const auto [table, name] = place_in_used(names[n]);
-    const auto used =
-        std::ranges::find_if(known, [&](const recipe::UsedKey& one) { return one.table == table && one.key == name; });
+    const auto place = place_in_used(names[n]);
+    const auto used = std::ranges::find_if(
+        known, [&](const recipe::UsedKey& one) { return one.table == place.first && one.key == place.second; });
     const char* behind = used == known.end() ? nullptr : used->value.c_str();
     char* end = nullptr;
     const double start = behind == nullptr ? 0 : std::strtod(behind, &end);
@@ -102,7 +102,7 @@ std::vector<FitKey> keys_to_fit(const FitOptions& options, const std::vector<rec
                          behind == nullptr || end == behind ? "Name a number that the recipe uses, with its tables"
                                                             : "Give low and high"});
     FitKey key{names[n], start, start / widest, start * widest};
-    if (name.ends_with("_deg")) key.high = std::max(start, std::min(key.high, most_degrees));
+    if (place.second.ends_with("_deg")) key.high = std::max(start, std::min(key.high, most_degrees));
     if (n < options.low.size()) key.low = options.low[n];
     if (n < options.high.size()) key.high = options.high[n];
     keys.push_back(key);
@@ -297,7 +297,7 @@ std::string fitted_head(const Fit& fit, const Request& request, const FitProblem
 
 /// Refuses a fitted.toml that a person wrote, and a folder that takes none.
 fs::path fitted_file(const Request& request) {
-  const fs::path file = fs::absolute(request.recipe).lexically_normal().parent_path() / "fitted.toml";
+  fs::path file = fs::absolute(request.recipe).lexically_normal().parent_path() / "fitted.toml";
   if (const auto there = text_if_there(file); there && !there->starts_with(head_of_fitted))
     throw DataError({file.string() + ": it is there already", "talus fit did not write it", "Give it another name"});
   return file;
