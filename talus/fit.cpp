@@ -116,7 +116,8 @@ class Fit {
   Fit(const Request& request, FitProblem problem) : request_(request), problem_(std::move(problem)) {
     const auto text = text_if_there(file());
     const auto json = nlohmann::json::parse(text.value_or(""), nullptr, false);
-    if (json.is_object() && json.contains("runs")) known_ = json["runs"];
+    for (const char* list : {"runs", "others"})
+      if (json.is_object() && json.contains(list)) known_.insert(known_.end(), json[list].begin(), json[list].end());
   }
 
   std::vector<FitRun> run() {
@@ -161,6 +162,10 @@ class Fit {
     nlohmann::ordered_json json;
     for (const FitKey& key : problem_.keys) json["keys"].push_back(key.name);
     json["runs"] = made_;
+    json["others"] = nlohmann::json::array();
+    for (const auto& run : known_)
+      if (std::ranges::none_of(made_, [&](const auto& own) { return own["mark"] == run.value("mark", ""); }))
+        json["others"].emplace_back(run);
     if (best) json["best"] = *best;
     write_text(file(), json.dump(2) + "\n");
   }
@@ -247,7 +252,7 @@ class Fit {
 
   const Request& request_;
   FitProblem problem_;
-  nlohmann::json known_ = nlohmann::json::array();                 ///< runs of an earlier call
+  std::vector<nlohmann::json> known_;                              ///< runs of earlier calls
   nlohmann::ordered_json made_ = nlohmann::ordered_json::array();  ///< of this one
   std::optional<FitScore> first_;
   int alike_ = 0;  ///< runs so far that scored as the first one; -1: one did not

@@ -68,7 +68,7 @@ TEST_F(FitInProcess, goes_on_where_it_was_interrupted_and_repeats_nothing) {
   test::Listener first, second, third;
   int lines = 0;
   first.heard = [&](const std::string& line) {
-    if (line.find(".") != std::string::npos && ++lines == 5) first.own.interrupt();
+    if (line.find('.') != std::string::npos && ++lines == 5) first.own.interrupt();
   };
   try {
     EXPECT_EQ(fit(first), 130) << first.text;
@@ -82,6 +82,8 @@ TEST_F(FitInProcess, goes_on_where_it_was_interrupted_and_repeats_nothing) {
   ASSERT_EQ(fit(third), 0) << third.text;
   EXPECT_EQ(kept(), made);
   EXPECT_FALSE(test::holds(third.text, {"solve: [solve] has changed"})) << third.text;
+  ASSERT_EQ(fit(third, {"fit.runs=5", "solve.base.friction_angle_deg=20"}), 0) << third.text;
+  EXPECT_GE(kept()["others"].size() + kept()["runs"].size(), made["runs"].size());
 }
 
 TEST_F(FitInProcess, refuses_what_it_cannot_fit) {
