@@ -102,7 +102,7 @@ class Search {
     }
     while (std::isfinite(f_b) && f_a * f_b > 0 && may_run(most)) {
       const double next = scale.inside(b + step);
-      if (next == b) return;  // at a bound, and still on one side
+      if (next == b || std::abs(f_b) > std::abs(f_a)) return;  // at a bound, or on the way back
       a = b;
       f_a = f_b;
       f_b = difference_at(b = next);

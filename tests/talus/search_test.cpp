@@ -90,6 +90,19 @@ TEST(FitSearch, finds_the_edge_of_a_cliff_and_says_how_steep_it_is) {
   EXPECT_LT(steepest.runout_high, 450);
 }
 
+TEST(FitSearch, does_not_run_away_where_no_run_out_fits) {
+  const auto thin_rim = [](double friction) {  // too far at any friction, least at 20
+    FitScore score;
+    score.runout = 2500 + 4000 * std::pow(std::log(friction / 20), 2);
+    score.runout_difference = score.runout - 2200;
+    score.overlap = 0.7 - std::abs(std::log(friction / 20));
+    return score;
+  };
+  const auto runs = search_one(thin_rim, 15);
+  EXPECT_NEAR(runs[best_of(runs)].values[0], 20, 0.5);
+  for (const FitRun& run : runs) EXPECT_LT(run.values[0], 40);
+}
+
 TEST(FitSearch, does_without_a_run_out_or_without_an_overlap) {
   const auto without = [](auto number) {
     return [number](double friction) {
