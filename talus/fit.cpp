@@ -39,7 +39,6 @@ constexpr double steep = 3;  // per cent of run-out for one of the key, from whi
 
 /// A stage of one of the runs failed.
 struct Failed {
-  std::string stage;
   StageOutcome outcome;
 };
 
@@ -113,7 +112,8 @@ std::vector<FitKey> keys_to_fit(const FitOptions& options, const std::vector<rec
 /// A search whose runs are those of a scene, in its folder of results.
 class Fit {
  public:
-  Fit(const Request& request, FitProblem problem) : request_(request), problem_(std::move(problem)) {
+  Fit(const Request& request, FitProblem problem)
+      : request_(request), problem_(std::move(problem)), inputs_(inputs_of(request)) {
     const auto text = text_if_there(file());
     const auto json = nlohmann::json::parse(text.value_or(""), nullptr, false);
     for (const char* list : {"runs", "others"})
@@ -196,22 +196,30 @@ class Fit {
     return score;
   }
 
-  /// Of the inputs and tables that a run depends on.
-  static std::string mark_of(const Request& request) {
-    std::string text = version();
+  /// Checksums of the files that the runs read besides their own results; numbers of keys change none.
+  static std::string inputs_of(const Request& request) {
+    std::string text;
     for (const char* name : stage_names) {
       const Stage stage = stage_called(name);
-      const Ingredients of = ingredients_of(stage, open_call(stage, call_of(request, name)));
-      for (const auto& [table, checksum] : of.tables) text += checksum;
-      for (const auto& [input, checksum] : of.inputs)
+      for (const auto& [input, checksum] : ingredients_of(stage, open_call(stage, call_of(request, name))).inputs)
         if (!lies_in(input, request.out)) text += checksum.value_or("");
+    }
+    return text;
+  }
+
+  /// Of the inputs and tables that a run depends on.
+  std::string mark_of(const Request& request) const {
+    std::string text = version() + inputs_;
+    for (const char* name : stage_names) {
+      const Stage stage = stage_called(name);
+      text += stage.used_toml(open_call(stage, call_of(request, name)).recipe);
     }
     return sha256_of_text(text).substr(0, mark_digits);
   }
 
   static FitScore computed(const Request& request) {
     Said said = run_quietly(request);
-    if (said.outcome.code != ExitCode::success) throw Failed{"talus fit", std::move(said.outcome)};
+    if (said.outcome.code != ExitCode::success) throw Failed{std::move(said.outcome)};
     const std::string text = text_if_there(request.out / "score.json").value_or("");
     const auto json = nlohmann::json::parse(text, nullptr, false);
     FitScore score = score_in(json);
@@ -252,6 +260,7 @@ class Fit {
 
   const Request& request_;
   FitProblem problem_;
+  std::string inputs_;
   std::vector<nlohmann::json> known_;                              ///< runs of earlier calls
   nlohmann::ordered_json made_ = nlohmann::ordered_json::array();  ///< of this one
   std::optional<FitScore> first_;
@@ -332,8 +341,9 @@ int fit_scene(const Request& request) {
   const FitProblem problem{keys_to_fit(options, keys_of(request)), options.runs};
   const fs::path fitted = fitted_file(request);
   make_folder(request.out);
+  const std::vector<std::string> alone = one_run(recipe);
   Request single = request, best_run = request;
-  single.set = all_of(request.set, one_run(recipe));
+  single.set = all_of(request.set, alone);
   try {
     const OutputLock lock(request.out, "talus fit");
     Fit fit(single, problem);
@@ -351,10 +361,10 @@ int fit_scene(const Request& request) {
     write_text(fitted, fitted_head(fit, request, problem, runs, best) + recipe::edited(recipe_text(request), set));
     print_results({fitted, fit.file()});
   } catch (const Failed& failed) {
-    return report_faults(failed.stage, failed.outcome);
+    return report_faults("talus fit", failed.outcome);
   }
   best_run.recipe = fitted;
-  best_run.set = one_run(recipe);
+  best_run.set = alone;
   return run_scene(best_run);
 }
 

@@ -4,21 +4,18 @@
 
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "common/recipe/parsed.hpp"
 
 namespace talus::recipe {
 namespace {
 
-/// Where a place of toml++, which counts lines and code points from 1, begins in a text.
-std::size_t byte_of(const std::string& text, const toml::source_position& position) {
-  std::size_t at = 0;
-  for (toml::source_index line = 1; line < position.line && at < text.size(); ++line) at = text.find('\n', at) + 1;
-  for (toml::source_index passed = 1; passed < position.column && at < text.size(); ++passed) {
-    do ++at;
-    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U);
-  }
-  return at;
+/// Where a place of toml++, which counts from 1, begins in a text.
+std::size_t place_in(const std::string& text, const toml::source_position& position) {
+  std::size_t line = 0;
+  for (toml::source_index passed = 1; passed < position.line; ++passed) line = text.find('\n', line) + 1;
+  return line + byte_of(std::string_view(text).substr(line), position.column);
 }
 
 std::optional<toml::table> parsed_toml(const std::string& text) {
@@ -36,7 +33,7 @@ std::string as_toml(const std::string& value) { return parsed_toml("value = " + 
 std::string with_value(const std::string& text, const toml::table& root, const std::string& key,
                        const std::string& value) {
   if (const auto node = toml::at_path(root, key); node && !node.is_table()) {
-    const auto begin = byte_of(text, node.node()->source().begin), end = byte_of(text, node.node()->source().end);
+    const auto begin = place_in(text, node.node()->source().begin), end = place_in(text, node.node()->source().end);
     return text.substr(0, begin) + value + text.substr(end);
   }
   for (auto dot = key.rfind('.'); dot != std::string::npos && dot > 0; dot = key.rfind('.', dot - 1)) {

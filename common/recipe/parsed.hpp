@@ -29,6 +29,9 @@ inline constexpr std::string_view known_tables[] = {"scene",    "preprocess", "s
 /// "recipe.toml:12:3", or "--set key=value" where the value was given so
 std::string place(const std::string& file, const toml::source_region& source);
 
+/// Where character `column` of a line (from 1, as toml++ counts: code points) begins.
+std::size_t byte_of(std::string_view line, std::size_t column);
+
 /// Puts the values of a recipe's constructor into a parsed recipe. Throws RecipeError: what cannot be put in.
 void apply_overrides(toml::table& root, const std::vector<std::string>& overrides);
 

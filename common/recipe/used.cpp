@@ -7,14 +7,12 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
-#include "common/recipe/toml.hpp"
+#include "common/recipe/parsed.hpp"
 #include "common/whole_text.hpp"
 
 namespace talus::recipe {
-namespace {
 
-/// Where character `column` (from 1, as toml++ counts: code points) begins.
-std::size_t byte_of(const std::string& line, std::size_t column) {
+std::size_t byte_of(std::string_view line, std::size_t column) {
   std::size_t at = 0;
   for (std::size_t passed = 1; passed < column && at < line.size(); ++passed) {
     do ++at;
@@ -22,6 +20,8 @@ std::size_t byte_of(const std::string& line, std::size_t column) {
   }
   return at;
 }
+
+namespace {
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
