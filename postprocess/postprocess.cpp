@@ -201,11 +201,12 @@ Dependencies depends(const StageContext& context) {
   return depends;
 }
 
-void run(StageContext& context) {
+void run(StageContext& context, bool members_only) {
   const auto options = context.recipe.read<Options>("postprocess");
-  if (slides_of(context.recipe).on()) return run_ensemble(context, stage(), options, true);
+  if (slides_of(context.recipe).on() || members_only)
+    return run_ensemble(context, stage(), options, true, members_only);
   const bool single = has_single_run(context, options);
-  if (ensemble_of(context.recipe).on()) run_ensemble(context, stage(), options, !single);
+  if (ensemble_of(context.recipe).on()) run_ensemble(context, stage(), options, !single, false);
   if (single)
     run_single(context, options);
   else if (const fs::path file = run_file(context, options); fs::exists(file))
@@ -215,6 +216,7 @@ void run(StageContext& context) {
 
 Stage stage() {
   const auto against = std::make_shared<std::optional<fs::path>>();
+  const auto members_only = std::make_shared<bool>(false);
   Stage stage;
   stage.name = "talus-postprocess";
   stage.table = "postprocess";
@@ -237,10 +239,15 @@ Stage stage() {
   stage.flags = {{.name = "--against",
                   .help = "Compare the run in --out with the one in this folder, write OUT/comparison.html, and stop",
                   .value = "DIR",
-                  .set = [against](const std::string& folder) { *against = folder; }}};
+                  .set = [against](const std::string& folder) { *against = folder; }},
+                 {.name = "--members-only",
+                  .help = "Write members.csv and likelihood.json of an ensemble, and stop",
+                  .set = [members_only](const std::string&) { *members_only = true; }}};
   stage.depends = depends;
   stage.id_of = id_in;
-  stage.run = [against](StageContext& context) { *against ? compare(context, **against) : run(context); };
+  stage.run = [against, members_only](StageContext& context) {
+    *against ? compare(context, **against) : run(context, *members_only);
+  };
   return stage;
 }
 

@@ -15,6 +15,7 @@ Stage stage();
 Dependencies depends(const StageContext& context);
 
 /// Reads the recipe's table, the run and the survey; writes the results into context.out, except under --check.
-void run(StageContext& context);
+/// `members_only`: of an ensemble members.csv and likelihood.json alone.
+void run(StageContext& context, bool members_only = false);
 
 }  // namespace talus::postprocess

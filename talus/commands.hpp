@@ -61,11 +61,22 @@ struct Said {
   std::vector<std::pair<LogLevel, std::string>> lines = {};  ///< advice and warnings
 };
 
+/// Thrown where a stage of one of several runs fails.
+struct StageFailed {
+  StageOutcome outcome;
+};
+
 /// Calls a stage; its log is kept instead of written.
 Said call_quietly(const std::string& stage, const StageCall& call);
 
 /// The faults that a stage finds in its tables, those of `known` left out.
 void add_table_faults(const Request& request, const std::string& stage, std::vector<Fault>& known);
+
+/// Of the files that the runs of a request read besides their own results; numbers of keys change none of them.
+std::string inputs_mark(const Request& request);
+
+/// Of version, inputs (inputs_mark) and tables: runs of the same mark have the same results.
+std::string run_mark(const Request& request, const std::string& inputs);
 
 /// Throws RecipeError with the faults that all stages find in their tables.
 void require_tables(const Request& request);
@@ -115,6 +126,13 @@ Said run_quietly(const Request& request);
 /// recipe, fitted.toml, and runs it. Returns the exit code of a stage that failed, or 0. Throws RecipeError: no key, or
 /// one that has no effect; DataError: no survey, a fitted.toml that a person wrote.
 int fit_scene(const Request& request);
+
+/// Draws the keys of [[ensemble.vary]] from their distributions as the survey makes them probable (draw_posterior()),
+/// on the scene itself: OUT/calibration.json keeps the runs, which a second call does not repeat. Writes posterior.csv
+/// (the draws), fitted.toml beside the recipe (the most probable one), and the results of the ensemble of all draws.
+/// Returns the exit code of a stage that failed, or 0. Throws RecipeError: nothing varies, too few members, members of
+/// another kind; DataError: no survey, no run with a likelihood, a fitted.toml that a person wrote.
+int calibrate_scene(const Request& request);
 
 struct DataRequest {
   std::string name;             ///< of an example; empty: list them

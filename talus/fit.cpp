@@ -12,19 +12,18 @@
 #include "common/ensemble/fit_options.hpp"
 #include "common/ensemble/options.hpp"
 #include "common/error.hpp"
-#include "common/recipe/edited.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/recipe/used.hpp"
 #include "common/stage/files.hpp"
 #include "common/stage/identity.hpp"
 #include "talus/commands.hpp"
+#include "talus/fitted_recipe.hpp"
 #include "talus/search.hpp"
 
 namespace talus::command {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view head_of_fitted = "# Fitted by talus fit";
 /// The number that decides how far a slide goes on the bed of a law, in the form that the recipe gives.
 struct LawFriction {
   std::string_view law, coefficient, angle;
@@ -36,11 +35,6 @@ constexpr LawFriction frictions[] = {{"velocity-weakening", "steady_coefficient"
 constexpr double widest = 4;  // bounds over the recipe's value
 constexpr double most_degrees = 60;
 constexpr double steep = 3;  // per cent of run-out for one of the key, from which it is called a cliff
-
-/// A stage of one of the runs failed.
-struct Failed {
-  StageOutcome outcome;
-};
 
 /// "solve.part 1" and "release", as in a used recipe, for "solve.part[0].release".
 std::pair<std::string, std::string> place_in_used(const std::string& key) {
@@ -113,7 +107,7 @@ std::vector<FitKey> keys_to_fit(const FitOptions& options, const std::vector<rec
 class Fit {
  public:
   Fit(const Request& request, FitProblem problem)
-      : request_(request), problem_(std::move(problem)), inputs_(inputs_of(request)) {
+      : request_(request), problem_(std::move(problem)), inputs_(inputs_mark(request)) {
     const auto text = text_if_there(file());
     const auto json = nlohmann::json::parse(text.value_or(""), nullptr, false);
     for (const char* list : {"runs", "others"})
@@ -175,7 +169,7 @@ class Fit {
     Request one = request_;
     for (const std::string& value : set(values)) one.set.push_back(value);
     one.set.emplace_back("postprocess.outputs=[]");
-    const std::string mark = mark_of(one);
+    const std::string mark = run_mark(one, inputs_);
     const auto known = std::ranges::find_if(known_, [&](const auto& run) { return run.value("mark", "") == mark; });
     FitScore score;
     if (known != known_.end()) {
@@ -196,30 +190,9 @@ class Fit {
     return score;
   }
 
-  /// Checksums of the files that the runs read besides their own results; numbers of keys change none.
-  static std::string inputs_of(const Request& request) {
-    std::string text;
-    for (const char* name : stage_names) {
-      const Stage stage = stage_called(name);
-      for (const auto& [input, checksum] : ingredients_of(stage, open_call(stage, call_of(request, name))).inputs)
-        if (!lies_in(input, request.out)) text += checksum.value_or("");
-    }
-    return text;
-  }
-
-  /// Of the inputs and tables that a run depends on.
-  std::string mark_of(const Request& request) const {
-    std::string text = version() + inputs_;
-    for (const char* name : stage_names) {
-      const Stage stage = stage_called(name);
-      text += stage.used_toml(open_call(stage, call_of(request, name)).recipe);
-    }
-    return sha256_of_text(text).substr(0, mark_digits);
-  }
-
   static FitScore computed(const Request& request) {
     Said said = run_quietly(request);
-    if (said.outcome.code != ExitCode::success) throw Failed{std::move(said.outcome)};
+    if (said.outcome.code != ExitCode::success) throw StageFailed{std::move(said.outcome)};
     const std::string text = text_if_there(request.out / "score.json").value_or("");
     const auto json = nlohmann::json::parse(text, nullptr, false);
     FitScore score = score_in(json);
@@ -277,13 +250,6 @@ std::string steep_words(const Fit& fit, const std::vector<FitRun>& runs) {
       std::abs(s.elasticity) > steep ? ". Near such a cliff a small error of the value decides: give ranges" : "");
 }
 
-/// The text of the recipe, without what an earlier fit put above it.
-std::string recipe_text(const Request& request) {
-  std::string text = text_if_there(request.recipe).value_or("");
-  if (text.starts_with(head_of_fitted)) text.erase(0, text.find("\n\n") + 2);
-  return text;
-}
-
 /// Says where the overlap asks for another value than the run-out.
 void warn_of_two_minds(const Fit& fit, const std::vector<FitRun>& runs, std::size_t best) {
   constexpr double clearly = 0.05;
@@ -297,24 +263,17 @@ void warn_of_two_minds(const Fit& fit, const std::vector<FitRun>& runs, std::siz
       std::abs(other.score.runout_difference)));
 }
 
-std::string fitted_head(const Fit& fit, const Request& request, const FitProblem& problem,
-                        const std::vector<FitRun>& runs, std::size_t best) {
-  std::string text = fmt::format("{} (Talus {}), {}, from {}.\n", head_of_fitted, version(), utc_now(),
-                                 request.recipe.filename().string());
+/// Where the values come from.
+std::vector<std::string> fitted_lines(const Fit& fit, const FitProblem& problem, const std::vector<FitRun>& runs,
+                                      std::size_t best) {
+  std::vector<std::string> lines;
   for (std::size_t n = 0; n < problem.keys.size(); ++n)
-    text += fmt::format("# {} = {:.4g} is the best of {} runs between {:.4g} and {:.4g}; the recipe had {:.4g}.\n",
-                        problem.keys[n].name, runs[best].values[n], runs.size(), problem.keys[n].low,
-                        problem.keys[n].high, problem.keys[n].start);
-  text += fmt::format("# {}\n# {}\n", fit.head(), fit.line(runs[best].values, runs[best].score));
-  return text + "# It was fitted to this event: agreement with it is no test of the friction.\n\n";
-}
-
-/// Refuses a fitted.toml that a person wrote, and a folder that takes none.
-fs::path fitted_file(const Request& request) {
-  fs::path file = fs::absolute(request.recipe).lexically_normal().parent_path() / "fitted.toml";
-  if (const auto there = text_if_there(file); there && !there->starts_with(head_of_fitted))
-    throw DataError({file.string() + ": it is there already", "talus fit did not write it", "Give it another name"});
-  return file;
+    lines.push_back(fmt::format("{} = {:.4g} is the best of {} runs between {:.4g} and {:.4g}; the recipe had {:.4g}.",
+                                problem.keys[n].name, runs[best].values[n], runs.size(), problem.keys[n].low,
+                                problem.keys[n].high, problem.keys[n].start));
+  lines.push_back(fit.head());
+  lines.push_back(fit.line(runs[best].values, runs[best].score));
+  return lines;
 }
 
 std::vector<std::string> all_of(const std::vector<std::string>& some, const std::vector<std::string>& more) {
@@ -339,7 +298,7 @@ int fit_scene(const Request& request) {
   const recipe::Recipe recipe(request.recipe, request.set);
   const auto options = recipe.read<FitOptions>("fit");
   const FitProblem problem{keys_to_fit(options, keys_of(request)), options.runs};
-  const fs::path fitted = fitted_file(request);
+  const FittedRecipe fitted(request, "talus fit");
   make_folder(request.out);
   const std::vector<std::string> alone = one_run(recipe);
   Request single = request, best_run = request;
@@ -355,15 +314,14 @@ int fit_scene(const Request& request) {
     fit.write(best);
     if (problem.keys.size() == 1)
       if (const std::string words = steep_words(fit, runs); !words.empty()) log_info(words);
-    const auto set = all_of(all_of(request.set, fit.set(runs[best].values)), {"postprocess.friction_is=fitted"});
     warn_of_two_minds(fit, runs, best);
     log_info(fmt::format("Best: {}", fmt::join(fit.set(runs[best].values), ", ")));
-    write_text(fitted, fitted_head(fit, request, problem, runs, best) + recipe::edited(recipe_text(request), set));
-    print_results({fitted, fit.file()});
-  } catch (const Failed& failed) {
+    fitted.write(all_of(request.set, fit.set(runs[best].values)), fitted_lines(fit, problem, runs, best));
+    print_results({fitted.file(), fit.file()});
+  } catch (const StageFailed& failed) {
     return report_faults("talus fit", failed.outcome);
   }
-  best_run.recipe = fitted;
+  best_run.recipe = fitted.file();
   best_run.set = alone;
   return run_scene(best_run);
 }

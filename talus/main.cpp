@@ -34,6 +34,7 @@ constexpr const char* footer =
     "release\n"
     "  talus new dem.tif outline.gpkg --volume 2e5        the same of a slope that may fail, with its doubts\n"
     "  talus fit recipe.toml                              the friction with which the run agrees with the survey\n"
+    "  talus calibrate recipe.toml                        how sure that is, and what follows for the maps\n"
     "  talus check recipe.toml                            every fault of all stages, nothing is written\n"
     "  talus compare out-a out-b                          two runs beside one another: out-a/comparison.html\n"
     "  talus data cascade2021                             a public example, fetched and checked\n"
@@ -109,6 +110,12 @@ void declare(CLI::App& app, Asked& asked) {
       "fitted.toml beside the recipe, and run it");
   declare_scene(*fit, asked);
   fit->callback([&] { asked.command = [&] { return fit_scene(scene_request(asked)); }; });
+  CLI::App* calibrate = app.add_subcommand(
+      "calibrate",
+      "Draw the keys of [[ensemble.vary]] as the survey makes them probable: runs the scene many times; writes\n"
+      "posterior.csv, fitted.toml beside the recipe, and the probability maps of the draws");
+  declare_scene(*calibrate, asked);
+  calibrate->callback([&] { asked.command = [&] { return calibrate_scene(scene_request(asked)); }; });
 }
 
 void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {

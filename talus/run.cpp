@@ -12,6 +12,7 @@
 #include "common/ensemble/options.hpp"
 #include "common/error.hpp"
 #include "common/stage/files.hpp"
+#include "common/stage/identity.hpp"
 #include "postprocess/stage.hpp"
 #include "preprocess/stage.hpp"
 #include "solver/stage.hpp"
@@ -231,6 +232,25 @@ Said run_quietly(const Request& request) {
     if (all.outcome.code != ExitCode::success) break;
   }
   return all;
+}
+
+std::string inputs_mark(const Request& request) {
+  std::string text;
+  for (const char* name : stage_names) {
+    const Stage stage = stage_called(name);
+    for (const auto& [input, checksum] : ingredients_of(stage, open_call(stage, call_of(request, name))).inputs)
+      if (!lies_in(input, request.out)) text += checksum.value_or("");
+  }
+  return sha256_of_text(text);
+}
+
+std::string run_mark(const Request& request, const std::string& inputs) {
+  std::string text = version() + inputs;
+  for (const char* name : stage_names) {
+    const Stage stage = stage_called(name);
+    text += stage.used_toml(open_call(stage, call_of(request, name)).recipe);
+  }
+  return sha256_of_text(text).substr(0, mark_digits);
 }
 
 int compare_runs(const fs::path& first, const fs::path& second, const Request& request) {

@@ -2,6 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/ensemble/fit_options.hpp"
 
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "common/ensemble/counts.hpp"
+
 namespace talus {
 namespace {
 
@@ -27,6 +35,25 @@ void FitOptions::describe(recipe::Visitor& v) {
              "Give one for each of the keys, in their order"});
   for (std::size_t n = 0; n < low.size() && n < high.size(); ++n)
     v.needs(low[n] < high[n], {"[fit] low is not below high", "no value lies between them", "Mend one of them"});
+}
+
+void CalibrateNumber::describe(recipe::Visitor& v) {
+  std::vector<std::string_view> known;
+  for (const ResultNumber& number : result_numbers) known.emplace_back(number.name);
+  v.text("result", result, "a result of members.csv that was measured, with its unit: \"largest_speed_m_s\"");
+  v.needs(std::ranges::find(known, result) != known.end(),
+          {fmt::format("[[calibrate.number]] result = \"{}\"", result), "members have no result of this name",
+           fmt::format("Give one of {}", fmt::join(known, ", "))});
+  v.number("value", value, recipe::any, "what was measured");
+  v.number("deviation", deviation, recipe::not_negative, "its standard error");
+  v.needs(value != 0, {"[[calibrate.number]] value is 0",
+                       "the size of the model's discrepancy is sought relative to it", "Give a number that is not 0"});
+}
+
+void CalibrateOptions::describe(recipe::Visitor& v) {
+  v.number("cell_factor", cell_factor, {1, 8},
+           "calibrate first with cells so many times as large, then correct; 1: not");
+  recipe::list(v, "number", numbers, "a measured number that is compared besides the survey's map");
 }
 
 }  // namespace talus

@@ -12,10 +12,10 @@ namespace talus {
 namespace {
 
 /// The words of a recipe, in the order of Design.
-constexpr std::array<std::string_view, 10> designs{"sobol",       "latin-hypercube", "optimal-latin-hypercube",
+constexpr std::array<std::string_view, 11> designs{"sobol",       "latin-hypercube", "optimal-latin-hypercube",
                                                    "monte-carlo", "full-grid",       "one-at-a-time",
-                                                   "sensitivity", "table",           "budget",
-                                                   "slides"};
+                                                   "sensitivity", "table",           "posterior",
+                                                   "budget",      "slides"};
 
 /// The keys that a distribution takes, and whether it needs them.
 struct Parameters {
@@ -161,13 +161,16 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
   int place = static_cast<int>(design);
   v.one_of(
       "design", place, {designs.begin(), designs.end()},
-      "how the members are drawn; full-grid, one-at-a-time, table and budget give their number themselves, and "
+      "how the members are drawn; full-grid, one-at-a-time, table, posterior and budget give their number themselves, "
+      "and "
       "sensitivity takes the largest number up to members that it can; budget: the recipe and single changes of it, "
       "members and [[ensemble.vary]] being left aside; slides: those of [slides], the default beside that table");
   design = static_cast<Design>(place);
   v.integer("levels", levels, {2, 1000}, "full-grid, one-at-a-time: quantiles of each key");
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
-  v.path("table", table, "design = \"table\": a CSV file, a column for each key that varies, a row for each member");
+  v.path("table", table,
+         "design = \"table\": a CSV file, a column for each key that varies, a row for each member; \"posterior\": the "
+         "posterior.csv of talus calibrate");
   v.number("failed_share", failed_share, recipe::fraction, "share of the members that may fail");
   v.names("keep", keep, {},
           "members whose whole run is kept, counted from 0: \"17\"; \"all\"; \"deposits\": of each the deposit's "
@@ -188,9 +191,10 @@ void EnsembleOptions::check(std::vector<Fault>& faults) const {
   if (vary.empty() && !elevation_error.acts() && design != Design::table)
     faults.push_back({"[ensemble] with nothing that varies", "all members would be the same run",
                       "Add [[ensemble.vary]], or [ensemble.elevation_error]"});
-  if ((design == Design::table) == table.empty())
+  if ((design == Design::table || design == Design::posterior) == table.empty())
     faults.push_back({"[ensemble] table and design do not go together",
-                      "design = \"table\" is given by its file, and by nothing else", "Give both or neither"});
+                      "design = \"table\" and \"posterior\" are given by a file, and no other is",
+                      "Give both or neither"});
   std::set<std::string> keys;
   for (const VaryOptions& one : vary)
     if (!keys.insert(one.key).second)

@@ -89,6 +89,7 @@ enum class Design {
   one_at_a_time,      ///< the middle, then each key at its `levels` quantiles with the others in the middle
   sensitivity,        ///< two independent samples and their mixtures, for Sobol indices (Saltelli 2002)
   table,              ///< as a file of comma-separated values says
+  posterior,          ///< the same, in the unit cube of the distributions, as `talus calibrate` writes it
   budget,             ///< the recipe itself, then one change each, as [ensemble.budget] says
   slides,             ///< the slides of [slides], each a member: no sample of anything
 };
@@ -150,7 +151,7 @@ struct EnsembleOptions {
   Design design = Design::sobol;
   int levels = 5;  ///< of full_grid and one_at_a_time
   int seed = 1;
-  std::filesystem::path table;  ///< of design = "table"
+  std::filesystem::path table;  ///< of design = "table" and "posterior"
   double failed_share = 0.05;   ///< of the members that may fail before the ensemble does; of a budget all but one may
   std::vector<std::string>
       keep;  ///< members whose whole run is kept: "12", "all"; "deposits": of each the deposit's map

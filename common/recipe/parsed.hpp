@@ -24,7 +24,7 @@ struct Recipe::Parsed {
 
 /// The tables a recipe may hold.
 inline constexpr std::string_view known_tables[] = {"scene",    "preprocess", "solve", "postprocess",
-                                                    "ensemble", "slides",     "fit"};
+                                                    "ensemble", "slides",     "fit",   "calibrate"};
 
 /// "recipe.toml:12:3", or "--set key=value" where the value was given so
 std::string place(const std::string& file, const toml::source_region& source);

@@ -11,6 +11,7 @@
 
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
+#include "postprocess/ensemble/comparison.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 
@@ -83,15 +84,6 @@ std::string cell(const RowColumn& column, std::size_t member) {
   return column.words.empty() ? fmt::format("{}", value) : csv_field(column.words.at(static_cast<std::size_t>(value)));
 }
 
-/// A footprint on the survey's grid, as the share of each cell that it covers; where the run's map ends, nothing.
-std::vector<double> on_survey(const Footprint& footprint, const MapGrid& from, const MapGrid& to) {
-  const std::vector<std::uint8_t> cells = cells_of(footprint, from.count());
-  std::vector<double> share = on_grid({from, {cells.begin(), cells.end()}}, to);
-  for (double& value : share)
-    if (!(value > 0)) value = 0;
-  return share;
-}
-
 /// The deposit of a member that was kept, on the survey's grid as that of a single run comes there.
 OnSurveyGrid deposit_on_survey(const KeptThickness& deposit, const MapGrid& from, const Survey& survey,
                                const Options& options) {
@@ -140,7 +132,8 @@ class Scores {
         survey_(survey),
         surveyed_deposit_(comparable_deposit(survey, counts.scene)),
         options_(options),
-        cell_area_(survey.grid.cell * survey.grid.cell) {
+        cell_area_(survey.grid.cell * survey.grid.cell),
+        comparison_(counts, survey, surveyed_deposit_, options.calibrate, options.deposit_threshold) {
     const std::string footprint =
         fmt::format("footprint (thicker than {:g} m) against {}", counts.scene.threshold, survey.name);
     const std::string thickness = fmt::format("the deposit's thickness against {}", survey.name);
@@ -164,26 +157,18 @@ class Scores {
     const MapGrid& from = counts_.scene.grid;
     const MapGrid& to = survey_.grid;
     if (!survey_.footprint.empty()) {
-      const Contingency here = compare(on_survey(counts_.flow[k], from, to), most_of_a_cell, survey_.footprint,
+      const Contingency here = compare(covered_shares(counts_.flow[k], from, to), most_of_a_cell, survey_.footprint,
                                        survey_.footprint_threshold, cell_area_);
       flow_[0].values[k] = here.csi();
       flow_[1].values[k] = here.hit_rate();
       flow_[2].values[k] = here.false_alarm_ratio();
     }
-    if (surveyed_deposit_.empty()) return;
-    const auto csi = [&](const std::vector<double>& covered) {
-      return compare(covered, most_of_a_cell, surveyed_deposit_, options_.deposit_threshold, cell_area_).csi();
-    };
-    if (!counts_.deposit_thickness[k].kept()) {
-      deposit_[0].values[k] = csi(on_survey(counts_.deposit[k], from, to));
-      return;
-    }
-    const OnSurveyGrid own = deposit_on_survey(counts_.deposit_thickness[k],
-                                               counts_.grid_of(static_cast<std::int64_t>(k)), survey_, options_);
-    deposit_[0].values[k] = csi(own.covered);
-    const ThicknessError error = thickness_error(own.deposit, surveyed_deposit_, options_.deposit_threshold);
-    thickness_[0].values[k] = error.rmse;
-    thickness_[1].values[k] = error.bias;
+    std::optional<OnSurveyGrid> own;
+    if (!surveyed_deposit_.empty() && counts_.deposit_thickness[k].kept())
+      own = deposit_on_survey(counts_.deposit_thickness[k], counts_.grid_of(static_cast<std::int64_t>(k)), survey_,
+                              options_);
+    if (!surveyed_deposit_.empty()) score_deposit(k, own);
+    comparison_.compare(k, own ? &*own : nullptr);
   }
 
   /// The columns that have something to compare with.
@@ -191,6 +176,13 @@ class Scores {
     std::vector<RowColumn> columns;
     const auto add = [&](std::vector<RowColumn>& more) { std::ranges::move(more, std::back_inserter(columns)); };
     if (!survey_.footprint.empty()) add(flow_);
+    if (comparison_.any())
+      columns.push_back({ColumnKind::score,
+                         "log_likelihood",
+                         "1",
+                         fmt::format("logarithm of the likelihood, given {}", survey_.name),
+                         comparison_.logarithms(),
+                         {}});
     if (surveyed_deposit_.empty()) return columns;
     add(deposit_);
     if (std::ranges::any_of(counts_.deposit_thickness, [](const KeptThickness& one) { return one.kept(); }))
@@ -201,12 +193,26 @@ class Scores {
     return columns;
   }
 
+  Json likelihood(bool drawn) const { return comparison_.any() ? comparison_.json(drawn) : Json(); }
+
  private:
+  void score_deposit(std::size_t k, const std::optional<OnSurveyGrid>& own) {
+    const std::vector<double> covered =
+        own ? own->covered : covered_shares(counts_.deposit[k], counts_.scene.grid, survey_.grid);
+    deposit_[0].values[k] =
+        compare(covered, most_of_a_cell, surveyed_deposit_, options_.deposit_threshold, cell_area_).csi();
+    if (!own) return;
+    const ThicknessError error = thickness_error(own->deposit, surveyed_deposit_, options_.deposit_threshold);
+    thickness_[0].values[k] = error.rmse;
+    thickness_[1].values[k] = error.bias;
+  }
+
   const EnsembleCounts& counts_;
   const Survey& survey_;
   std::vector<double> surveyed_deposit_;
   const Options& options_;
   double cell_area_;
+  Comparison comparison_;
   std::vector<RowColumn> flow_;       // overlap of the footprint of the flow
   std::vector<RowColumn> deposit_;    // overlap of the footprint of the deposit
   std::vector<RowColumn> thickness_;  // errors of the deposit's thickness
@@ -215,13 +221,14 @@ class Scores {
 /// Scores of each member on the survey's grid, whose cells are covered where a footprint covers more than half of them;
 /// errors of the thickness, where it was kept, over the cells where either exceeds the threshold. Of a surveyed change
 /// the cells that were released are left out of the deposit, for what lies there is no gain of height.
-std::vector<RowColumn> member_scores(const Ensemble& ensemble, const Survey& survey, const Options& options) {
+void add_scores(MemberRows& rows, const Ensemble& ensemble, const Survey& survey, const Options& options) {
   const EnsembleCounts& counts = ensemble.counts;
   Scores scores(counts, survey, options);
   in_threads(counts.states.size(), "scoring the members", [&](std::size_t k) {
     if (counts.states[k] == MemberState::counted) scores.score(k);
   });
-  return scores.columns();
+  for (RowColumn& column : scores.columns()) rows.columns.push_back(std::move(column));
+  rows.likelihood = scores.likelihood(ensemble.table.design == design_name(Design::posterior));
 }
 
 }  // namespace
@@ -294,7 +301,7 @@ const char* word_of(MemberState state) {
 MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey) {
   const EnsembleCounts& counts = ensemble.counts;
   const std::vector<std::string> none(counts.states.size());
-  MemberRows rows{counts.states, none, none, {}};
+  MemberRows rows{counts.states, none, none, {}, {}};
   for (const MemberWords& failure : counts.failures)
     rows.failures.at(static_cast<std::size_t>(failure.member)) = failure.words;
   for (const Finding& warning : counts.findings) {
@@ -315,8 +322,7 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
       column.values.push_back(counts.states[k] == MemberState::counted ? counts.results[k].*(number.value) : nan);
     rows.columns.push_back(std::move(column));
   }
-  if (survey)
-    for (RowColumn& column : member_scores(ensemble, *survey, options)) rows.columns.push_back(std::move(column));
+  if (survey) add_scores(rows, ensemble, *survey, options);
   return rows;
 }
 

@@ -17,6 +17,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "postprocess/options/options.hpp"
+#include "postprocess/report/page.hpp"
 #include "postprocess/survey/survey.hpp"
 
 namespace talus::postprocess {
@@ -68,6 +69,7 @@ struct MemberRows {
   std::vector<std::string> failures;  ///< [members]: why it failed or was left out; empty otherwise
   std::vector<std::string> warnings;  ///< [members]: what it warned of; empty otherwise
   std::vector<RowColumn> columns;
+  Json likelihood;  ///< likelihood.json (comparison.hpp); null: nothing is compared with a survey
 };
 
 /// The state of a member in words: "left out".

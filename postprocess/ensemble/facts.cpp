@@ -43,6 +43,11 @@ ShareWords share_words(const std::string& design) {
   if (design == "table")
     return {"Share of the counted members, which a table lists: a probability only where its rows were drawn from one.",
             "The error that as many independent draws would have."};
+  if (design == "posterior")
+    return {
+        "Share of the members, which a calibration drew: the probability, given the distributions in [ensemble] and "
+        "the survey.",
+        "The error that as many independent draws would have; draws of a calibration are not quite independent."};
   if (design == "sensitivity")
     return {given, "Standard error of one of the design's blocks of independent draws: an upper bound of the error."};
   if (design == "monte-carlo") return {given, "Standard error of the share."};

@@ -185,6 +185,7 @@ struct EnsembleResults {
   const Options& options;
   const Ensemble& ensemble;
   const std::optional<Survey>& survey;
+  bool members_only;
   const MemberRows rows = member_rows(ensemble, options, survey);
   const std::string used = used_text();
 
@@ -194,6 +195,8 @@ struct EnsembleResults {
     write(ensemble.table.slides ? "slides.csv" : "members.csv",
           members_csv(rows, ensemble.table.slides ? "slide" : "member"));
     write("postprocess.used.toml", used);
+    if (!rows.likelihood.is_null()) write("likelihood.json", rows.likelihood.dump(2) + "\n");
+    if (members_only) return;
     if (ensemble.table.slides) return write_slides();
     ensemble.table.rows.empty() ? write_probabilities() : write_budget();
   }
@@ -318,9 +321,10 @@ Dependencies ensemble_depends(const StageContext& context) {
   return {{context.out / last}, ensemble_files(context.out)};
 }
 
-void run_ensemble(StageContext& context, const Stage& stage, Options options, bool alone) {
+void run_ensemble(StageContext& context, const Stage& stage, Options options, bool alone, bool members_only) {
   Findings found("postprocess", options.accept);
   Ensemble ensemble = read_ensemble(context);
+  options.calibrate = context.recipe.read<CalibrateOptions>("calibrate");
   options.settle_thresholds(ensemble.counts.scene.threshold);
   if (const double counted = ensemble.counts.scene.threshold;
       counted != options.deposit_threshold || counted != options.footprint_threshold)
@@ -337,7 +341,7 @@ void run_ensemble(StageContext& context, const Stage& stage, Options options, bo
   }
   hazard_rule(ensemble, options.hazard);
   log_info(found_words(ensemble));
-  if (!context.check_only) EnsembleResults{context, stage, options, ensemble, survey}.write();
+  if (!context.check_only) EnsembleResults{context, stage, options, ensemble, survey, members_only}.write();
 }
 
 }  // namespace talus::postprocess

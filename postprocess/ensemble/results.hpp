@@ -79,8 +79,9 @@ std::vector<std::vector<int>> footprint_outlines(const std::vector<std::uint8_t>
 
 /// Reads members.h5 and the counts in OUT and writes what follows from them, of an ensemble probability.nc last, of a
 /// budget budget.json, of slides slides.nc. With context.check_only it reads and tests alone. `alone`: there is no
-/// run.h5 besides, whose results would say what is doubtful in the survey. Throws DataError.
-void run_ensemble(StageContext& context, const Stage& stage, Options options, bool alone);
+/// run.h5 besides, whose results would say what is doubtful in the survey. `members_only`: nothing beyond members.csv
+/// and likelihood.json. Throws DataError.
+void run_ensemble(StageContext& context, const Stage& stage, Options options, bool alone, bool members_only);
 
 /// What run_ensemble() reads, and its last result.
 Dependencies ensemble_depends(const StageContext& context);

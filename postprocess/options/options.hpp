@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "common/ensemble/fit_options.hpp"
 #include "common/error.hpp"
 #include "common/recipe/recipe.hpp"
 #include "postprocess/options/writer.hpp"
@@ -287,6 +288,7 @@ struct Options {
   ReachConeOptions reach_cone;
   BuildingOptions buildings;
   HazardOptions hazard;
+  CalibrateOptions calibrate;       // no keys: the recipe's [calibrate]
   std::vector<std::string> accept;  // what is refused as implausible, insisted on by name
 
   bool writes(std::string_view word) const;

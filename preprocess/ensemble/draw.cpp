@@ -111,9 +111,33 @@ void draw_one_at_a_time(MemberTable& table, const std::vector<Marginal>& margina
   take_levels(table, levels, members);
 }
 
+/// The members of a file whose columns are those of the table, as places in the unit cube.
+UnitDesign listed_design(const MemberTable& table, const std::filesystem::path& file) {
+  MemberTable listed;
+  take_listed(listed, file);
+  const auto refuse = [&](const std::string& what) {
+    throw DataError({file.string() + ": " + what, "the file gives places in the unit cube of [[ensemble.vary]]",
+                     "Give the posterior.csv that talus calibrate wrote for this recipe"});
+  };
+  UnitDesign design;
+  design.shares.assign(static_cast<std::size_t>(listed.count), {});
+  for (const MemberColumn& column : table.columns) {
+    const MemberColumn* const from = listed.find(column.key);
+    if (from == nullptr) refuse("it has no column " + column.key);
+    for (std::size_t k = 0; k < from->values.size(); ++k) {
+      const double share = from->values[k];
+      if (!from->words.empty() || !(share > 0 && share < 1))
+        refuse(fmt::format("{} of row {} does not lie between 0 and 1", column.key, k + 1));
+      design.shares[k].push_back(share);
+    }
+  }
+  return design;
+}
+
 void draw_sample(MemberTable& table, const EnsembleOptions& o, const std::vector<Marginal>& marginals) {
   const auto copula = copula_of(o.vary, o.correlation);
-  UnitDesign design = unit_design(o.design, o.members, marginals.size(), o.seed);
+  UnitDesign design = o.design == Design::posterior ? listed_design(table, o.table)
+                                                    : unit_design(o.design, o.members, marginals.size(), o.seed);
   table.count = static_cast<std::int64_t>(design.shares.size());
   table.sample_size = design.sample_size;
   for (std::vector<double>& shares : design.shares) {

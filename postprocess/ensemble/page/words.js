@@ -7,6 +7,7 @@ import { columnNumber, columnTitle } from "./columns.js";
 import { standardError } from "./map_panel.js";
 
 const designs = {
+  posterior: "a calibration with the survey",
   sobol: "Sobol\u2019s sequence",
   "latin-hypercube": "a Latin hypercube",
   "optimal-latin-hypercube": "an optimised Latin hypercube",

@@ -175,7 +175,7 @@ TEST_F(RecipeFile, points_at_unknown_keys_and_scene_names_and_adds_what_the_opti
   EXPECT_EQ(
       faults("end = 3\n"),
       "r.toml:1:1: unknown top-level key \"end\". Known here: scene, preprocess, solve, postprocess, ensemble, slides, "
-      "fit");
+      "fit, calibrate");
   EXPECT_EQ(faults("[solve]\ndensity = 3"),
             "r.toml:2:1: unknown key \"density\" in [solve]. Did you mean \"density_kg_m3\"?");
   EXPECT_EQ(faults("[solve]\nfriction_angle_deg = 3"),

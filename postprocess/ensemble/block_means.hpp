@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A surveyed map as some hundred means over blocks of cells, with the covariance of their errors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "common/map/raster.hpp"
+
+namespace talus::postprocess {
+
+/// Square blocks of cells over a mass and one block around it. What lies farther out is one number more: its volume,
+/// spread over the blocks.
+class BlockMeans {
+ public:
+  /// Blocks of a side that gives the mass about 50 of them, and at least `least_side` [m]. `surveyed` [cells]: NaN
+  /// where nothing was; `inside` [cells]: the mass. Blocks of which less than half was surveyed are left out.
+  BlockMeans(const MapGrid& grid, const std::vector<double>& surveyed, const std::vector<char>& inside,
+             double least_side);
+
+  std::size_t count() const { return places_.size(); }  ///< the number of blocks
+  double side() const { return side_ * cell_; }         ///< of a block [m]
+  double extent() const { return extent_; }             ///< the longest distance of two blocks, at least a side [m]
+  /// Centres [m]; of what lies beyond a place that is far from all of them.
+  std::vector<std::array<double, 2>> places() const;
+
+  /// The mean of each block's surveyed cells, then the sum of what is positive beyond over the number of cells in
+  /// blocks. NaN counts as 0.
+  std::vector<double> of(const std::vector<double>& values) const;
+
+  /// The covariance [(count + 1)^2] of means of errors with these deviations [cells], alike within `range` by a
+  /// spherical correlation (Matheron 1963), 0: each cell for itself. Its mean over 4 x 4 places in each of two blocks.
+  std::vector<double> covariance(const std::vector<double>& deviation, double range) const;
+
+ private:
+  static constexpr int out = -1, beyond = -2;
+  double cell_;
+  int side_ = 1;                  ///< [cells]
+  std::vector<int> block_of_;     ///< [cells]
+  std::vector<double> cells_in_;  ///< [count] surveyed cells
+  std::vector<std::array<double, 2>> places_;
+  double extent_ = 0;
+};
+
+}  // namespace talus::postprocess

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "postprocess/ensemble/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/map/limits.hpp"
+#include "postprocess/ensemble/block_means.hpp"
+
+namespace talus::postprocess {
+namespace {
+
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+Compared compared_in(const BlockMeans& blocks, const char* name, const char* unit,
+                     const std::vector<double>& surveyed) {
+  Compared compared{name, unit, blocks.of(surveyed), blocks.places(), {}, 0, blocks.side() / 2, blocks.extent()};
+  compared.surveyed.back() = 0;  // the blocks hold all of the surveyed mass
+  compared.scale = root_mean_square({compared.surveyed.begin(), compared.surveyed.end() - 1});
+  return compared;
+}
+
+/// Deviation of the survey's error in each cell [m].
+std::vector<double> deviation_of(const SurveyError& error, std::size_t cells) {
+  constexpr double sure = 5;  // the noise over its standard deviation
+  return error.sigma.empty() ? std::vector<double>(cells, error.noise / sure) : error.sigma;
+}
+
+std::vector<char> cells_above(const std::vector<double>& values, double threshold) {
+  std::vector<char> above;
+  for (const double value : values) above.push_back(value > threshold ? 1 : 0);
+  return above;
+}
+
+bool holds_any(const std::vector<char>& cells) { return std::ranges::find(cells, 1) != cells.end(); }
+
+}  // namespace
+
+std::vector<double> covered_shares(const Footprint& footprint, const MapGrid& from, const MapGrid& to) {
+  const std::vector<std::uint8_t> cells = cells_of(footprint, from.count());
+  std::vector<double> share = on_grid({from, {cells.begin(), cells.end()}}, to);
+  for (double& value : share)
+    if (!(value > 0)) value = 0;
+  return share;
+}
+
+Comparison::Comparison(const EnsembleCounts& counts, const Survey& survey, const std::vector<double>& deposit,
+                       const CalibrateOptions& options, double deposit_threshold)
+    : counts_(counts), survey_(survey) {
+  const bool kept = std::ranges::any_of(counts.deposit_thickness, [](const KeptThickness& one) { return one.kept(); });
+  const std::vector<char> mass = cells_above(deposit, deposit_threshold);
+  if (holds_any(mass) && kept) {
+    add_thickness(deposit, mass);
+  } else if (holds_any(mass)) {
+    std::vector<double> covered = deposit;
+    for (std::size_t cell = 0; cell < covered.size(); ++cell)
+      if (std::isfinite(covered[cell])) covered[cell] = mass[cell];
+    add_outline("outline of the deposit", covered, counts.deposit);
+  }
+  if (!survey.footprint.empty() && !survey.footprint_is_change) {
+    std::vector<double> covered = survey.footprint;
+    for (double& value : covered)
+      if (std::isfinite(value)) value = value > survey.footprint_threshold ? 1 : 0;
+    add_outline("outline of the flow", covered, counts.flow);
+  }
+  for (const CalibrateNumber& number : options.numbers) add_number(number);
+}
+
+void Comparison::add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside) {
+  std::vector<double> measured = survey_.measured;
+  for (std::size_t cell = 0; cell < measured.size(); ++cell)
+    if (!std::isfinite(deposit[cell])) measured[cell] = nan;
+  const BlockMeans blocks(survey_.grid, measured, inside, counts_.scene.grid.cell);
+  Compared compared = compared_in(blocks, "thickness of the deposit", "m", measured);
+  compared.error = blocks.covariance(deviation_of(survey_.error, measured.size()), survey_.error.correlation_length);
+  Likelihood likelihood(compared);
+  const auto simulated = [blocks](std::size_t, const OnSurveyGrid* kept) {
+    return kept == nullptr ? std::vector<double>{} : blocks.of(kept->change);
+  };
+  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulated,
+                    std::vector<std::vector<double>>(counts_.states.size())});
+}
+
+void Comparison::add_outline(const char* name, const std::vector<double>& covered,
+                             const std::vector<Footprint>& footprints) {
+  const std::vector<char> inside = cells_above(covered, 0);
+  if (!holds_any(inside)) return;
+  const BlockMeans blocks(survey_.grid, covered, inside, counts_.scene.grid.cell);
+  Compared compared = compared_in(blocks, name, "1", covered);
+  compared.error.assign(compared.surveyed.size() * compared.surveyed.size(), 0.0);
+  Likelihood likelihood(compared);
+  const auto simulated = [this, blocks, &footprints](std::size_t k, const OnSurveyGrid*) {
+    return blocks.of(covered_shares(footprints[k], counts_.scene.grid, survey_.grid));
+  };
+  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulated,
+                    std::vector<std::vector<double>>(counts_.states.size())});
+}
+
+void Comparison::add_number(const CalibrateNumber& number) {
+  const auto* const of =
+      std::ranges::find_if(result_numbers, [&](const ResultNumber& one) { return number.result == one.name; });
+  Compared compared{
+      number.result, of->unit, {number.value}, {}, {number.deviation * number.deviation}, std::abs(number.value), 0, 0};
+  Likelihood likelihood(compared);
+  const auto simulated = [this, of](std::size_t k, const OnSurveyGrid*) {
+    return std::vector<double>{counts_.results[k].*(of->value)};
+  };
+  kinds_.push_back({std::move(compared), 0, std::move(likelihood), simulated,
+                    std::vector<std::vector<double>>(counts_.states.size())});
+}
+
+void Comparison::compare(std::size_t k, const OnSurveyGrid* kept) {
+  for (Kind& kind : kinds_)
+    if (const std::vector<double> simulated = kind.simulated(k, kept); !simulated.empty())
+      kind.by_discrepancy[k] = kind.likelihood.by_discrepancy(simulated);
+}
+
+std::vector<double> Comparison::logarithms() const {
+  std::vector<double> sums(counts_.states.size(), 0.0);
+  for (const Kind& kind : kinds_)
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      sums[k] += kind.by_discrepancy[k].empty() ? nan : log_mean(kind.by_discrepancy[k]);
+  return sums;
+}
+
+Json Comparison::json(bool drawn) const {
+  const std::vector<double> logarithms = this->logarithms();
+  double most = -std::numeric_limits<double>::infinity();
+  for (const double value : logarithms) most = std::fmax(most, value);
+  Json json{{"log_likelihood", Json::array()}, {"compared", Json::array()}};
+  for (const double value : logarithms) json["log_likelihood"].push_back(std::isfinite(value) ? Json(value) : Json());
+  for (const Kind& kind : kinds_) {
+    const std::vector<Discrepancy>& table = kind.likelihood.table();
+    std::vector<double> probable(table.size(), 0.0);
+    double all = 0, error = 0;
+    for (std::size_t k = 0; k < logarithms.size(); ++k) {
+      if (!std::isfinite(logarithms[k])) continue;
+      const double weight = drawn ? 1 : std::exp(logarithms[k] - most), own = log_mean(kind.by_discrepancy[k]);
+      all += weight;
+      for (std::size_t n = 0; n < table.size(); ++n)
+        probable[n] += weight * std::exp(kind.by_discrepancy[k][n] - own) / static_cast<double>(table.size());
+    }
+    const std::size_t n = kind.compared.surveyed.size();
+    for (std::size_t a = 0; a < n; ++a) error += kind.compared.error[a * n + a] / static_cast<double>(n);
+    Json discrepancy = Json::array();
+    for (std::size_t entry = 0; entry < table.size(); ++entry)
+      discrepancy.push_back({table[entry].deviation, table[entry].length, all > 0 ? probable[entry] / all : 0});
+    json["compared"].push_back({{"name", kind.compared.name},
+                                {"unit", kind.compared.unit},
+                                {"numbers", n},
+                                {"block_m", kind.side},
+                                {"usual_size", kind.compared.scale},
+                                {"survey_error", std::sqrt(error)},
+                                {"discrepancy", std::move(discrepancy)}});
+  }
+  return json;
+}
+
+}  // namespace talus::postprocess
