@@ -179,7 +179,7 @@ Request on_larger_cells(const Request& request, double factor) {
   const Domain domain = read_domain(request.out / "domain.vdb");
   Request larger = request;
   larger.out = request.out / "larger-cells";
-  larger.shown.clear();
+  larger.shown = request.shown.empty() ? larger.out : request.shown / "larger-cells";
   larger.set.push_back(fmt::format("preprocess.grid.spacing_m={}", factor * domain.grid.cell));
   larger.set.push_back(fmt::format("preprocess.grid.layer_height_m={}", factor * domain.layer_height));
   return larger;

@@ -17,8 +17,17 @@ namespace {
 constexpr double edge = 2;              // deviations of the prior: what lies beyond is at its edge
 constexpr double large_loading = 0.35;  // of a key in a direction that is named
 
-Quantiles quantiles_of(const std::vector<double>& values) {
-  return {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95)};
+/// The value below which a further draw lies with a probability `q` (Hyndman and Fan 1996, type 6).
+double quantile_of_draws(const std::vector<double>& sorted, double q) {
+  const auto n = static_cast<double>(sorted.size());
+  const double place = std::clamp(q * (n + 1) - 1, 0.0, n - 1);
+  const auto below = static_cast<std::size_t>(place), above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+Quantiles quantiles_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  return {quantile_of_draws(values, 0.05), quantile_of_draws(values, 0.5), quantile_of_draws(values, 0.95)};
 }
 
 Eigen::MatrixXd matrix_of(const Places& places) {
@@ -108,9 +117,9 @@ std::vector<std::string> conclusions(const PosteriorSummary& summary) {
   for (const KeySummary& key : summary.keys)
     if (std::abs(key.shift) > edge)
       said.push_back(
-          fmt::format("{} lies at the {} edge of what [[ensemble.vary]] allows: the truth may lie beyond. "
-                      "Widen its distribution and calibrate again",
-                      key.key, key.shift > 0 ? "upper" : "lower"));
+          fmt::format("{} lies in the {} 5 % of its distribution in [[ensemble.vary]]: the truth may lie beyond. "
+                      "Widen it and calibrate again",
+                      short_name(key.key), key.shift > 0 ? "upper" : "lower"));
   for (const DiscrepancySummary& one : summary.discrepancies) {
     const std::string length = one.length > 0 ? fmt::format(", alike over {:.0f} m", one.length) : "";
     const std::string beside =
@@ -132,7 +141,7 @@ std::vector<std::string> conclusions(const PosteriorSummary& summary) {
                       one.name));
   }
   said.push_back(
-      fmt::format("Logarithm of the evidence: {:.1f}, standard error {:.1f}. Of recipes with the same survey "
+      fmt::format("Logarithm of the evidence: {:.1f}, standard error {:.1f} or more. Of recipes with the same survey "
                   "that with the larger one explains it better; a difference of 3 is strong (Kass and Raftery 1995)",
                   summary.log_evidence, summary.log_evidence_error));
   return said;

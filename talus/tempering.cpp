@@ -15,7 +15,7 @@ namespace talus::command {
 namespace {
 
 constexpr double effective_share = 0.5;               // of the draws, from one exponent to the next
-constexpr double unmoved = 0.2, unmoved_last = 0.05;  // share of the draws that a step may leave where they are
+constexpr double unmoved = 0.5, unmoved_last = 0.05;  // share of the draws that a step may leave where they are
 constexpr int most_sweeps = 12, cheap_sweeps = 4;
 constexpr double good_acceptance = 0.3;
 

@@ -27,11 +27,27 @@ double mean_correlation(double dx, double dy, double side, double range) {
   return sum / std::pow(samples, 4);
 }
 
+/// The cells of a mass that have most of their neighbours in it; all of them where none has.
+std::vector<char> without_noise(const MapGrid& grid, const std::vector<char>& inside) {
+  constexpr int most = 5;  // of nine
+  std::vector<char> kept(inside.size(), 0);
+  bool any = false;
+  each_cell(grid, [&](int column, int row) {
+    int count = 0;
+    each_near(grid, {column, row}, 1, [&](int c, int r) { count += inside[grid.index(c, r)]; });
+    const std::size_t cell = grid.index(column, row);
+    kept[cell] = inside[cell] != 0 && count >= most ? 1 : 0;
+    any = any || kept[cell] != 0;
+  });
+  return any ? kept : inside;
+}
+
 }  // namespace
 
-BlockMeans::BlockMeans(const MapGrid& grid, const std::vector<double>& surveyed, const std::vector<char>& inside,
+BlockMeans::BlockMeans(const MapGrid& grid, const std::vector<double>& surveyed, const std::vector<char>& mass,
                        double least_side)
     : cell_(grid.cell), block_of_(grid.count(), out) {
+  const std::vector<char> inside = without_noise(grid, mass);
   const auto cells = static_cast<double>(std::ranges::count_if(inside, [](char one) { return one != 0; }));
   side_ = std::max(static_cast<int>(std::lround(std::sqrt(cells / blocks_wanted))),
                    static_cast<int>(std::ceil(least_side / cell_ - 1e-6)));
@@ -43,17 +59,16 @@ BlockMeans::BlockMeans(const MapGrid& grid, const std::vector<double>& surveyed,
                        side_ * cell_,
                        grid.crs_wkt};
   std::vector<double> known(coarse.count(), 0);
-  std::vector<char> near(coarse.count(), 0);
+  std::vector<char> holds(coarse.count(), 0);
   const auto block_at = [&](int column, int row) { return coarse.index(column / side_, row / side_); };
   each_cell(grid, [&](int column, int row) {
     const std::size_t cell = grid.index(column, row), block = block_at(column, row);
     if (std::isfinite(surveyed[cell])) ++known[block];
-    if (inside[cell] != 0)
-      each_near(coarse, coarse.cell_of(block), 1, [&](int c, int r) { near[coarse.index(c, r)] = 1; });
+    if (inside[cell] != 0) holds[block] = 1;
   });
   std::vector<int> number(coarse.count(), beyond);
   for (std::size_t block = 0; block < known.size(); ++block) {
-    if (near[block] == 0 || 2 * known[block] < side_ * side_) continue;
+    if (holds[block] == 0 || 2 * known[block] < side_ * side_) continue;
     const auto [column, row] = coarse.cell_of(block);
     number[block] = static_cast<int>(places_.size());
     places_.push_back({coarse.x(column), coarse.y(row)});

@@ -11,8 +11,7 @@
 
 namespace talus::postprocess {
 
-/// Square blocks of cells over a mass and one block around it. What lies farther out is one number more: its volume,
-/// spread over the blocks.
+/// Square blocks of cells over a mass. What lies beyond them is one number more: its volume, spread over the blocks.
 class BlockMeans {
  public:
   /// Blocks of a side that gives the mass about 50 of them, and at least `least_side` [m]. `surveyed` [cells]: NaN

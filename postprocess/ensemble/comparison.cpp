@@ -31,6 +31,25 @@ std::vector<double> deviation_of(const SurveyError& error, std::size_t cells) {
   return error.sigma.empty() ? std::vector<double>(cells, error.noise / sure) : error.sigma;
 }
 
+/// Half the difference of a cell's neighbours along x or y; 0 where one is not known.
+std::vector<double> slope(const MapGrid& grid, const std::vector<double>& values, int x, int y) {
+  std::vector<double> slopes(values.size(), 0.0);
+  each_cell(grid, [&](int column, int row) {
+    if (!grid.holds(column - x, row - y) || !grid.holds(column + x, row + y)) return;
+    const double half = (values[grid.index(column + x, row + y)] - values[grid.index(column - x, row - y)]) / 2;
+    if (std::isfinite(half)) slopes[grid.index(column, row)] = half;
+  });
+  return slopes;
+}
+
+/// A map of a run by blocks, with the modes of a mass that is too thick, or lies elsewhere, as a whole.
+Simulated simulated_map(const MapGrid& grid, const BlockMeans& blocks, const std::vector<double>& values) {
+  Simulated simulated{blocks.of(values), {}};
+  simulated.modes = {simulated.numbers, blocks.of(slope(grid, values, 1, 0)), blocks.of(slope(grid, values, 0, 1))};
+  for (std::vector<double>& mode : simulated.modes) mode.back() = 0;
+  return simulated;
+}
+
 std::vector<char> cells_above(const std::vector<double>& values, double threshold) {
   std::vector<char> above;
   for (const double value : values) above.push_back(value > threshold ? 1 : 0);
@@ -79,10 +98,10 @@ void Comparison::add_thickness(const std::vector<double>& deposit, const std::ve
   Compared compared = compared_in(blocks, "thickness of the deposit", "m", measured);
   compared.error = blocks.covariance(deviation_of(survey_.error, measured.size()), survey_.error.correlation_length);
   Likelihood likelihood(compared);
-  const auto simulated = [blocks](std::size_t, const OnSurveyGrid* kept) {
-    return kept == nullptr ? std::vector<double>{} : blocks.of(kept->change);
+  const auto simulate = [this, blocks](std::size_t, const OnSurveyGrid* kept) {
+    return kept == nullptr ? Simulated{} : simulated_map(survey_.grid, blocks, kept->change);
   };
-  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulated,
+  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulate,
                     std::vector<std::vector<double>>(counts_.states.size())});
 }
 
@@ -94,10 +113,10 @@ void Comparison::add_outline(const char* name, const std::vector<double>& covere
   Compared compared = compared_in(blocks, name, "1", covered);
   compared.error.assign(compared.surveyed.size() * compared.surveyed.size(), 0.0);
   Likelihood likelihood(compared);
-  const auto simulated = [this, blocks, &footprints](std::size_t k, const OnSurveyGrid*) {
-    return blocks.of(covered_shares(footprints[k], counts_.scene.grid, survey_.grid));
+  const auto simulate = [this, blocks, &footprints](std::size_t k, const OnSurveyGrid*) {
+    return simulated_map(survey_.grid, blocks, covered_shares(footprints[k], counts_.scene.grid, survey_.grid));
   };
-  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulated,
+  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulate,
                     std::vector<std::vector<double>>(counts_.states.size())});
 }
 
@@ -107,16 +126,16 @@ void Comparison::add_number(const CalibrateNumber& number) {
   Compared compared{
       number.result, of->unit, {number.value}, {}, {number.deviation * number.deviation}, std::abs(number.value), 0, 0};
   Likelihood likelihood(compared);
-  const auto simulated = [this, of](std::size_t k, const OnSurveyGrid*) {
-    return std::vector<double>{counts_.results[k].*(of->value)};
+  const auto simulate = [this, of](std::size_t k, const OnSurveyGrid*) {
+    return Simulated{{counts_.results[k].*(of->value)}, {}};
   };
-  kinds_.push_back({std::move(compared), 0, std::move(likelihood), simulated,
+  kinds_.push_back({std::move(compared), 0, std::move(likelihood), simulate,
                     std::vector<std::vector<double>>(counts_.states.size())});
 }
 
 void Comparison::compare(std::size_t k, const OnSurveyGrid* kept) {
   for (Kind& kind : kinds_)
-    if (const std::vector<double> simulated = kind.simulated(k, kept); !simulated.empty())
+    if (const Simulated simulated = kind.simulate(k, kept); !simulated.numbers.empty())
       kind.by_discrepancy[k] = kind.likelihood.by_discrepancy(simulated);
 }
 

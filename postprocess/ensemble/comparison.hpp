@@ -37,13 +37,13 @@ class Comparison {
   Json json(bool drawn) const;
 
  private:
-  using Simulated = std::function<std::vector<double>(std::size_t k, const OnSurveyGrid* kept)>;
+  using Simulate = std::function<Simulated(std::size_t k, const OnSurveyGrid* kept)>;
   /// Numbers of one kind, and the members' likelihoods by them.
   struct Kind {
     Compared compared;
     double side;  ///< of a block [m]; 0: a single number
     Likelihood likelihood;
-    Simulated simulated;
+    Simulate simulate;
     std::vector<std::vector<double>> by_discrepancy;  ///< [members]; empty: not compared
   };
   void add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside);

@@ -14,7 +14,8 @@ namespace talus::postprocess {
 namespace {
 
 // The discrepancy's deviation is sought between these multiples of the usual size of what was surveyed.
-constexpr double smallest_share = 0.02, largest_share = 2;
+constexpr double smallest_share = 0.05, largest_share = 2;
+constexpr double mode_share = 0.5;  // c: size of a mode over the deviation
 constexpr int deviations = 15, lengths = 6;
 
 /// `count` values from low to high, the ratio of neighbours being the same.
@@ -44,6 +45,7 @@ struct Likelihood::Table {
     double constant;  ///< of the logarithm
   };
   Eigen::VectorXd surveyed;
+  double scale = 0;
   std::vector<Discrepancy> values;
   std::vector<Entry> entries;
 };
@@ -54,6 +56,7 @@ Likelihood::Likelihood(const Compared& compared) : table_(std::make_unique<Table
     throw std::logic_error("Likelihood: sizes do not agree");
   const auto size = static_cast<Eigen::Index>(n);
   table_->surveyed = Eigen::Map<const Eigen::VectorXd>(compared.surveyed.data(), size);
+  table_->scale = compared.scale;
   const Eigen::MatrixXd error = Eigen::Map<const Eigen::MatrixXd>(compared.error.data(), size, size);
   const bool placed = !compared.places.empty() && n > 1;
   for (const double length : placed ? geometric(compared.shortest, compared.longest, lengths) : std::vector{0.0}) {
@@ -74,17 +77,33 @@ Likelihood::Likelihood(Likelihood&&) noexcept = default;
 
 const std::vector<Discrepancy>& Likelihood::table() const { return table_->values; }
 
-std::vector<double> Likelihood::by_discrepancy(std::span<const double> simulated) const {
-  const auto size = static_cast<Eigen::Index>(simulated.size());
+std::vector<double> Likelihood::by_discrepancy(const Simulated& simulated) const {
+  const auto size = static_cast<Eigen::Index>(simulated.numbers.size());
   if (size != table_->surveyed.size()) throw std::logic_error("Likelihood: other numbers were surveyed");
-  const Eigen::VectorXd residual = table_->surveyed - Eigen::Map<const Eigen::VectorXd>(simulated.data(), size);
+  const Eigen::VectorXd residual = table_->surveyed - Eigen::Map<const Eigen::VectorXd>(simulated.numbers.data(), size);
+  const auto count = static_cast<Eigen::Index>(simulated.modes.size());
+  Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(size, count);
+  for (Eigen::Index n = 0; n < count; ++n) {
+    const Eigen::Map<const Eigen::VectorXd> mode(simulated.modes[static_cast<std::size_t>(n)].data(), size);
+    if (mode.squaredNorm() > 0)
+      modes.col(n) = mode * (table_->scale / std::sqrt(mode.squaredNorm() / static_cast<double>(size)));
+  }
   std::vector<double> logarithms;
-  for (const Table::Entry& entry : table_->entries)
-    logarithms.push_back(entry.constant - 0.5 * entry.factor.matrixL().solve(residual).squaredNorm());
+  for (std::size_t entry = 0; entry < table_->entries.size(); ++entry) {
+    const auto& [factor, constant] = table_->entries[entry];
+    const Eigen::VectorXd scaled = factor.matrixL().solve(residual);
+    double square = scaled.squaredNorm(), log_root = 0;
+    if (count > 0) {  // Woodbury's identity; modes have the usual size, and the table's deviation a share of it
+      const double share = mode_share * table_->values[entry].deviation / table_->scale;
+      const Eigen::MatrixXd wide = share * factor.matrixL().solve(modes);
+      const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(count, count) + wide.transpose() * wide);
+      square -= inner.matrixL().solve(wide.transpose() * scaled).squaredNorm();
+      log_root = inner.matrixLLT().diagonal().array().log().sum();
+    }
+    logarithms.push_back(constant - log_root - 0.5 * square);
+  }
   return logarithms;
 }
-
-double Likelihood::logarithm(std::span<const double> simulated) const { return log_mean(by_discrepancy(simulated)); }
 
 double log_mean(std::span<const double> values) {
   const double most = values.empty() ? -std::numeric_limits<double>::infinity() : *std::ranges::max_element(values);

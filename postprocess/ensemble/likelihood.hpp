@@ -28,9 +28,19 @@ struct Discrepancy {
   double length = 0;     ///< [m]; 0: independent from number to number
 };
 
-/// A normal likelihood: surveyed - simulated has the covariance E + s^2 K, where E is the survey's error and s^2 K the
-/// discrepancy of the model (Kennedy and O'Hagan 2001, eq. 4), K = exp(-distance / length). Neither s nor the length is
-/// known: the likelihood is the mean over both, whose logarithms are uniform a priori, on a fixed table of values.
+/// What a run gives in the place of surveyed numbers, and how it would change as a whole.
+struct Simulated {
+  std::vector<double> numbers;             ///< [n]; empty: nothing
+  std::vector<std::vector<double>> modes;  ///< [n] each, of any size: the numbers themselves, their slopes on the map
+};
+
+/// A normal likelihood: surveyed - simulated has the covariance E + s^2 (K + c^2 M), where E is the survey's error and
+/// the rest the discrepancy of the model (Kennedy and O'Hagan 2001, eq. 4): K = exp(-distance / length), and M is the
+/// sum of u u^T over the modes u of the run, brought to the usual size. The modes stand for a mass that is too thick or
+/// lies elsewhere as a whole; without them a discrepancy that is alike over the deposit is taken for an effect of the
+/// keys. They are those of the run, for those of the survey would favour thin runs (Peelle's puzzle: D'Agostini 1994).
+/// Neither s nor the length is known: the likelihood is the mean over both, whose logarithms are uniform a priori, on a
+/// fixed table of values.
 class Likelihood {
  public:
   /// Throws std::logic_error where the sizes do not agree.
@@ -41,9 +51,7 @@ class Likelihood {
   /// The values of the table, all equally probable before the survey.
   const std::vector<Discrepancy>& table() const;
   /// The logarithm of the survey's density given the discrepancy, for each value of the table.
-  std::vector<double> by_discrepancy(std::span<const double> simulated) const;
-  /// The logarithm of its mean over the table.
-  double logarithm(std::span<const double> simulated) const;
+  std::vector<double> by_discrepancy(const Simulated& simulated) const;
 
  private:
   struct Table;

@@ -6,6 +6,9 @@
 #include <functional>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "common/run/run_file.hpp"
 #include "common/stage/context.hpp"
 #include "talus/commands.hpp"
 #include "tests/common/scratch.hpp"
@@ -61,5 +64,27 @@ inline int run_in(Listener& listener, const command::Request& request) {
   const NoStdout quiet;
   return command::run_scene(request);
 }
+
+/// The bowl again, and the deposit of a run with a known friction as its survey.
+struct SurveyedBowl : RunInProcess {
+  static constexpr double truth = 19;
+  const std::string survey = "[postprocess.survey]\nthickness = \"truth/maps/deposit_thickness.tif\"\n";
+
+  SurveyedBowl() {
+    h5::prepare_library();
+    scratch.write("truth.toml", recipe(truth) + "[postprocess]\noutputs = []\n");
+    command::Request request = this->request("truth");
+    request.recipe = scratch / "truth.toml";
+    Listener listener;
+    EXPECT_EQ(run_in(listener, request), 0) << listener.text;
+  }
+  static std::string recipe(double friction) {
+    return fmt::format(
+        "[preprocess]\nbefore_dem = \"before.asc\"\nafter_dem = \"after.asc\"\n[preprocess.source]\n"
+        "seed_m = [500045, 5000105]\n[preprocess.grid]\nlayer_height_m = 2.0\n[solve]\nend_time_s = 20.0\n"
+        "[solve.base]\nlaw = \"coulomb\"\nfriction_angle_deg = {:.1f}  # of the bed\n",
+        friction);
+  }
+};
 
 }  // namespace talus::test

@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // talus fit on a scene whose survey is a run of known friction.
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
-#include "common/run/run_file.hpp"
 #include "tests/talus/bowl.hpp"
 
 namespace talus::command {
@@ -13,28 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct FitInProcess : test::RunInProcess {
-  static constexpr double truth = 19;
-
-  /// The bowl again, its survey the deposit of a run with that friction.
-  FitInProcess() {
-    h5::prepare_library();
-    scratch.write("truth.toml", recipe(truth) + "[postprocess]\noutputs = []\n");
-    Request request = this->request("truth");
-    request.recipe = scratch / "truth.toml";
-    test::Listener listener;
-    EXPECT_EQ(test::run_in(listener, request), 0) << listener.text;
-    scratch.write("recipe.toml", recipe(28) +
-                                     "[postprocess.survey]\nthickness = \"truth/maps/deposit_thickness.tif\"\n"
-                                     "[fit]\nruns = 14\n");
-  }
-  static std::string recipe(double friction) {
-    return fmt::format(
-        "[preprocess]\nbefore_dem = \"before.asc\"\nafter_dem = \"after.asc\"\n[preprocess.source]\n"
-        "seed_m = [500045, 5000105]\n[preprocess.grid]\nlayer_height_m = 2.0\n[solve]\nend_time_s = 20.0\n"
-        "[solve.base]\nlaw = \"coulomb\"\nfriction_angle_deg = {:.1f}  # of the bed\n",
-        friction);
-  }
+struct FitInProcess : test::SurveyedBowl {
+  FitInProcess() { scratch.write("recipe.toml", recipe(28) + survey + "[fit]\nruns = 14\n"); }
   int fit(test::Listener& listener, const std::vector<std::string>& set = {}) const {
     const BindContext bind(listener.own);
     const test::NoStdout quiet;
