@@ -191,7 +191,8 @@ std::string template_of_tables() {
          "\n# Many slides over one elevation model: outlines empty is none. All stages read this table.\n" +
          recipe::to_toml(SlideOptions{}, "slides", true) +
          "\n# What talus fit changes until a run agrees with the survey.\n" +
-         recipe::to_toml(FitOptions{}, "fit", true);
+         recipe::to_toml(FitOptions{}, "fit", true) + "\n# What talus calibrate compares besides the survey's map.\n" +
+         recipe::to_toml(CalibrateOptions{}, "calibrate", true);
 }
 
 /// The id of a domain; of level sets, which carry none, their SHA-256.

@@ -65,7 +65,7 @@ class Model {
   std::vector<double> operator()(const Places& places) {
     Json batch{{"mark", mark_}, {"cells", request_.out.filename().string()}, {"draws", places}};
     const auto known = std::ranges::find_if(known_, [&](const Json& one) { return same_draws(one, places); });
-    const std::vector<double> found = known != known_.end() ? numbers_in((*known)["log_likelihood"]) : computed(places);
+    std::vector<double> found = known != known_.end() ? numbers_in((*known)["log_likelihood"]) : computed(places);
     batch["log_likelihood"] = found;  // what failed becomes null
     journal_["made"].push_back(std::move(batch));
     if (known == known_.end()) write_text(file_, journal_.dump() + "\n");

@@ -100,7 +100,7 @@ class Tempering {
     return next;
   }
 
-  /// Systematic resampling (Kitagawa 1996).
+  /// Systematic resampling.
   void resample(const std::vector<double>& weights) {
     const std::size_t n = weights.size();
     const double start = uniform();
@@ -132,7 +132,7 @@ class Tempering {
     const Eigen::MatrixXd covariance =
         matrix.transpose() * matrix / static_cast<double>(n) + least * Eigen::MatrixXd::Identity(d, d);
     root_ = covariance.llt().matrixL();
-    scale_ = 2.38 / std::sqrt(static_cast<double>(d));  // Roberts, Gelman and Gilks 1997
+    scale_ = 2.38 / std::sqrt(static_cast<double>(d));
   }
 
   double uniform() { return std::uniform_real_distribution<double>()(random_); }

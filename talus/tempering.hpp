@@ -23,7 +23,7 @@ using LogLikelihoods = std::function<std::vector<double>(const Places& places)>;
 struct TemperingStep {
   std::size_t model = 0;  ///< 0: the cheapest
   double exponent = 0;    ///< of its likelihood, after the step
-  double effective = 0;   ///< independent draws that the weighted ones stand for (Kish 1965)
+  double effective = 0;   ///< independent draws that the weighted ones stand for
   int sweeps = 0;         ///< Metropolis moves of each draw
   double accepted = 0;    ///< share of the proposals
 };
@@ -37,10 +37,10 @@ struct Posterior {
 
 /// Draws from prior times likelihood: draws of the prior are weighted by a power of the likelihood that leaves half of
 /// them effective, resampled, and moved by Metropolis steps, until the power is 1 (Del Moral, Doucet and Jasra 2006;
-/// Ching and Chen 2007). Proposals have the draws' covariance; a step moves until half of the draws have moved, the last
-/// one until nineteen twentieths have. Of two models the first one, cheap, is treated so; the power then leads
-/// from its likelihood to the second one's, whose proposals are the ends of chains on the first (Liu 2001, section
-/// 9.4.3; delayed acceptance: Christen and Fox 2005). `first`: draws of the prior. Throws DataError where no run has a
+/// Ching and Chen 2007). Proposals have the draws' covariance; a step moves until half of the draws have moved, the
+/// last one until nineteen twentieths have. Of two models the first one, cheap, is treated so; the power then leads
+/// from its likelihood to the second one's, whose proposals are the ends of chains on the first
+/// (delayed acceptance: Christen and Fox 2005). `first`: draws of the prior. Throws DataError where no run has a
 /// likelihood.
 Posterior draw_posterior(Places first, unsigned seed, const std::vector<LogLikelihoods>& models);
 

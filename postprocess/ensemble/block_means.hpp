@@ -30,7 +30,7 @@ class BlockMeans {
   std::vector<double> of(const std::vector<double>& values) const;
 
   /// The covariance [(count + 1)^2] of means of errors with these deviations [cells], alike within `range` by a
-  /// spherical correlation (Matheron 1963), 0: each cell for itself. Its mean over 4 x 4 places in each of two blocks.
+  /// spherical correlation, 0: each cell for itself. Its mean over 4 x 4 places in each of two blocks.
   std::vector<double> covariance(const std::vector<double>& deviation, double range) const;
 
  private:

@@ -36,7 +36,8 @@ struct CalibrateInProcess : test::SurveyedBowl {
   }
 };
 
-constexpr const char* idle_key = "[[ensemble.vary]]\nkey = \"solve.material.youngs_modulus_Pa\"\nlow = 1.0e6\nhigh = 1.000001e6\n";
+constexpr const char* idle_key =
+    "[[ensemble.vary]]\nkey = \"solve.material.youngs_modulus_Pa\"\nlow = 1.0e6\nhigh = 1.000001e6\n";
 
 TEST_F(CalibrateInProcess, finds_the_friction_of_the_survey_with_its_interval) {
   test::Listener listener;

@@ -26,7 +26,7 @@ Places prior_draws(std::size_t count, std::size_t keys, unsigned seed = 7) {
   return places;
 }
 
-/// Measured numbers y = A z + noise of deviation s: the posterior of z is normal (Tarantola 2005, eq. 3.37).
+/// Measured numbers y = A z + noise of deviation s: the posterior of z is normal.
 struct Linear {
   Eigen::MatrixXd a;
   Eigen::VectorXd y;
