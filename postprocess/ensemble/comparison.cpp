@@ -71,6 +71,7 @@ std::vector<double> covered_shares(const Footprint& footprint, const MapGrid& fr
 Comparison::Comparison(const EnsembleCounts& counts, const Survey& survey, const std::vector<double>& deposit,
                        const CalibrateOptions& options, double deposit_threshold)
     : counts_(counts), survey_(survey) {
+  if (counts.other_cells) return;  // an error budget, whose members are no draws
   const bool kept = std::ranges::any_of(counts.deposit_thickness, [](const KeptThickness& one) { return one.kept(); });
   const std::vector<char> mass = cells_above(deposit, deposit_threshold);
   if (holds_any(mass) && kept) {
@@ -91,7 +92,7 @@ Comparison::Comparison(const EnsembleCounts& counts, const Survey& survey, const
 }
 
 void Comparison::add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside) {
-  std::vector<double> measured = survey_.measured;
+  std::vector<double> measured = survey_.measured.empty() ? deposit : survey_.measured;
   for (std::size_t cell = 0; cell < measured.size(); ++cell)
     if (!std::isfinite(deposit[cell])) measured[cell] = nan;
   const BlockMeans blocks(survey_.grid, measured, inside, counts_.scene.grid.cell);
