@@ -175,7 +175,6 @@ class Scores {
   std::vector<RowColumn> columns() {
     std::vector<RowColumn> columns;
     const auto add = [&](std::vector<RowColumn>& more) { std::ranges::move(more, std::back_inserter(columns)); };
-    if (!survey_.footprint.empty()) add(flow_);
     if (comparison_.any())
       columns.push_back({ColumnKind::score,
                          "log_likelihood",
@@ -183,6 +182,7 @@ class Scores {
                          fmt::format("logarithm of the likelihood, given {}", survey_.name),
                          comparison_.logarithms(),
                          {}});
+    if (!survey_.footprint.empty()) add(flow_);
     if (surveyed_deposit_.empty()) return columns;
     add(deposit_);
     if (std::ranges::any_of(counts_.deposit_thickness, [](const KeptThickness& one) { return one.kept(); }))
