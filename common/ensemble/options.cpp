@@ -170,7 +170,7 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
   v.integer("seed", seed, {0, 2147483647}, "another seed draws other members");
   v.path("table", table,
          "design = \"table\": a CSV file, a column for each key that varies, a row for each member; \"posterior\": the "
-         "posterior.csv of talus calibrate");
+         "draws.csv of talus calibrate");
   v.number("failed_share", failed_share, recipe::fraction, "share of the members that may fail");
   v.names("keep", keep, {},
           "members whose whole run is kept, counted from 0: \"17\"; \"all\"; \"deposits\": of each the deposit's "

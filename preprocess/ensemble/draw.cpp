@@ -117,7 +117,7 @@ UnitDesign listed_design(const MemberTable& table, const std::filesystem::path& 
   take_listed(listed, file);
   const auto refuse = [&](const std::string& what) {
     throw DataError({file.string() + ": " + what, "the file gives places in the unit cube of [[ensemble.vary]]",
-                     "Give the posterior.csv that talus calibrate wrote for this recipe"});
+                     "Give the draws.csv that talus calibrate wrote for this recipe"});
   };
   UnitDesign design;
   design.shares.assign(static_cast<std::size_t>(listed.count), {});
