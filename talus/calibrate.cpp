@@ -51,6 +51,12 @@ bool same_draws(const Json& batch, const Places& places) {
   return batch.is_object() && batch.contains("draws") && batch["draws"].get<Places>() == places;
 }
 
+/// Calls a stage, and throws where it fails.
+void call_or_throw(const char* stage, const StageCall& call) {
+  Said said = call_quietly(stage, call);
+  if (said.outcome.code != ExitCode::success) throw StageFailed{std::move(said.outcome)};
+}
+
 /// Runs of a recipe at places in the space of its keys, on its own cells or on larger ones.
 class Model {
  public:
@@ -99,8 +105,7 @@ class Model {
 
   /// The values of members at these places, without their runs.
   MemberTable drawn(const Places& places) const {
-    Said said = call_quietly("preprocess", call_of(members_at(places), "preprocess"));
-    if (said.outcome.code != ExitCode::success) throw StageFailed{std::move(said.outcome)};
+    call_or_throw("preprocess", call_of(members_at(places), "preprocess"));
     return read_member_table(EnsemblePaths{request_.out}.members());
   }
 
@@ -112,8 +117,7 @@ class Model {
       StageCall call = call_of(members, stage);
       if (std::string_view(stage) == "solve") call.flags.emplace_back("--resume", "");
       if (std::string_view(stage) == "postprocess") call.flags.emplace_back("--members-only", "");
-      Said said = call_quietly(stage, call);
-      if (said.outcome.code != ExitCode::success) throw StageFailed{std::move(said.outcome)};
+      call_or_throw(stage, call);
     }
     const auto json = Json::parse(text_if_there(request_.out / "likelihood.json").value_or(""), nullptr, false);
     if (!json.is_object())
@@ -173,9 +177,7 @@ Places prior_places(const EnsembleOptions& options) {
 
 /// The same recipe on cells so many times as large, beside its results.
 Request on_larger_cells(const Request& request, double factor) {
-  const StageCall call = call_of(request, "preprocess");
-  Said said = call_quietly("preprocess", call);
-  if (said.outcome.code != ExitCode::success) throw StageFailed{std::move(said.outcome)};
+  call_or_throw("preprocess", call_of(request, "preprocess"));
   const Domain domain = read_domain(request.out / "domain.vdb");
   Request larger = request;
   larger.out = request.out / "larger-cells";
@@ -279,7 +281,8 @@ class Calibration {
         for (const Json& batch : json[list]) journal_["batches"].push_back(batch);
   }
 
-  int run() {
+  /// The request of the ensemble of the draws, once they are made.
+  Request run() {
     const Places first = prior_places(options_);
     std::optional<Model> larger;
     if (factor_ > 1) larger.emplace(on_larger_cells(request_, factor_), keys_, journal_, file_);
@@ -311,12 +314,8 @@ class Calibration {
     for (const std::string& line : table_lines(summary)) log_info(line);
     for (const std::string& sentence : conclusions(summary)) log_info(sentence);
     print_results({fitted_.file(), request_.out / "posterior.csv", file_});
-    members_ = own.members_at(draws.places);
-    return 0;
+    return own.members_at(draws.places);
   }
-
-  /// The ensemble of the draws.
-  const Request& members() const { return members_; }
 
  private:
   const Request& request_;
@@ -326,7 +325,6 @@ class Calibration {
   std::vector<std::string> keys_;
   double factor_ = 1;
   Json journal_;
-  Request members_;
 };
 
 }  // namespace
@@ -335,13 +333,14 @@ int calibrate_scene(const Request& request) {
   require_tables(request);
   Calibration calibration(request);
   make_folder(request.out);
+  Request members;
   try {
     const OutputLock lock(request.out, "talus calibrate");
-    calibration.run();
+    members = calibration.run();
   } catch (const StageFailed& failed) {
     return report_faults("talus calibrate", failed.outcome);
   }
-  return run_scene(calibration.members());
+  return run_scene(members);
 }
 
 }  // namespace talus::command

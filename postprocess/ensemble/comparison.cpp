@@ -91,6 +91,12 @@ Comparison::Comparison(const EnsembleCounts& counts, const Survey& survey, const
   for (const CalibrateNumber& number : options.numbers) add_number(number);
 }
 
+void Comparison::add(Compared compared, double side, Simulate simulate) {
+  Likelihood likelihood(compared);
+  kinds_.push_back({std::move(compared), side, std::move(likelihood), std::move(simulate),
+                    std::vector<std::vector<double>>(counts_.states.size())});
+}
+
 void Comparison::add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside) {
   std::vector<double> measured = survey_.measured.empty() ? deposit : survey_.measured;
   for (std::size_t cell = 0; cell < measured.size(); ++cell)
@@ -98,12 +104,10 @@ void Comparison::add_thickness(const std::vector<double>& deposit, const std::ve
   const BlockMeans blocks(survey_.grid, measured, inside, counts_.scene.grid.cell);
   Compared compared = compared_in(blocks, "thickness of the deposit", "m", measured);
   compared.error = blocks.covariance(deviation_of(survey_.error, measured.size()), survey_.error.correlation_length);
-  Likelihood likelihood(compared);
   const auto simulate = [this, blocks](std::size_t, const OnSurveyGrid* kept) {
     return kept == nullptr ? Simulated{} : simulated_map(survey_.grid, blocks, kept->change);
   };
-  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulate,
-                    std::vector<std::vector<double>>(counts_.states.size())});
+  add(std::move(compared), blocks.side(), simulate);
 }
 
 void Comparison::add_outline(const char* name, const std::vector<double>& covered,
@@ -113,12 +117,10 @@ void Comparison::add_outline(const char* name, const std::vector<double>& covere
   const BlockMeans blocks(survey_.grid, covered, inside, counts_.scene.grid.cell);
   Compared compared = compared_in(blocks, name, "1", covered);
   compared.error.assign(compared.surveyed.size() * compared.surveyed.size(), 0.0);
-  Likelihood likelihood(compared);
   const auto simulate = [this, blocks, &footprints](std::size_t k, const OnSurveyGrid*) {
     return simulated_map(survey_.grid, blocks, covered_shares(footprints[k], counts_.scene.grid, survey_.grid));
   };
-  kinds_.push_back({std::move(compared), blocks.side(), std::move(likelihood), simulate,
-                    std::vector<std::vector<double>>(counts_.states.size())});
+  add(std::move(compared), blocks.side(), simulate);
 }
 
 void Comparison::add_number(const CalibrateNumber& number) {
@@ -126,12 +128,10 @@ void Comparison::add_number(const CalibrateNumber& number) {
       std::ranges::find_if(result_numbers, [&](const ResultNumber& one) { return number.result == one.name; });
   Compared compared{
       number.result, of->unit, {number.value}, {}, {number.deviation * number.deviation}, std::abs(number.value), 0, 0};
-  Likelihood likelihood(compared);
   const auto simulate = [this, of](std::size_t k, const OnSurveyGrid*) {
     return Simulated{{counts_.results[k].*(of->value)}, {}};
   };
-  kinds_.push_back({std::move(compared), 0, std::move(likelihood), simulate,
-                    std::vector<std::vector<double>>(counts_.states.size())});
+  add(std::move(compared), 0, simulate);
 }
 
 void Comparison::compare(std::size_t k, const OnSurveyGrid* kept) {
