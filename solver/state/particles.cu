@@ -31,13 +31,13 @@ struct GatherAll {
   }
 };
 
-/// The one of two gatherings that takes arrays of these numbers.
-template <class Real, std::size_t most_reals, std::size_t most_ints>
-GatherAll<Real, most_reals>& gather_of(const Real*, GatherAll<Real, most_reals>& reals, GatherAll<int, most_ints>&) {
+/// The one of two kernels over many arrays that takes arrays of these numbers.
+template <template <class, std::size_t> class Kernel, class Real, std::size_t most_reals, std::size_t most_ints>
+Kernel<Real, most_reals>& one_for(const Real*, Kernel<Real, most_reals>& reals, Kernel<int, most_ints>&) {
   return reals;
 }
-template <class Real, std::size_t most_reals, std::size_t most_ints>
-GatherAll<int, most_ints>& gather_of(const int*, GatherAll<Real, most_reals>&, GatherAll<int, most_ints>& ints) {
+template <template <class, std::size_t> class Kernel, class Real, std::size_t most_reals, std::size_t most_ints>
+Kernel<int, most_ints>& one_for(const int*, Kernel<Real, most_reals>&, Kernel<int, most_ints>& ints) {
   return ints;
 }
 
@@ -171,12 +171,16 @@ struct CopyPlaces {
   TALUS_HD int operator[](int p) const { return count + before[p]; }
 };
 
-template <class T>
+/// One thread: one point. A marked one is copied in all arrays: thirty kernels take longer than what they do.
+template <class T, std::size_t most>
 struct CopyMarked {
   CopyPlaces places;
-  T* list;
+  int count = 0;
+  T* arrays[most] = {};
   TALUS_HD void operator()(int p) const {
-    if (places.marked(p)) list[places[p]] = list[p];
+    if (!places.marked(p)) return;
+    const int copy = places[p];
+    for (int n = 0; n < count; ++n) arrays[n][copy] = arrays[n][p];
   }
 };
 
@@ -315,7 +319,7 @@ void Particles<Real, Device>::reorder_together(const Buffer<int, Device>& order,
   const auto add = [&](const ParticleField& field, int, auto& from, auto& to) {
     if (!sorts(field)) return;
     to.resize(static_cast<std::size_t>(count));
-    auto& gather = gather_of(to.data(), reals, ints);
+    auto& gather = one_for(to.data(), reals, ints);
     gather.from[gather.count] = from.data();
     gather.to[gather.count++] = to.data();
   };
@@ -361,15 +365,19 @@ bool Particles<Real, Device>::split(const GridView<Real>& grid, const std::uint6
   const int more = exclusive_sum(device_, marks.data(), marks.data(), before);
   if (more == 0) return false;
   const CopyPlaces places{marks.data(), before, more};
-  const auto copy = [&](const ParticleField& field, int, auto& array) {
+  CopyMarked<Real, components_kept(false)> reals{places};
+  CopyMarked<int, components_kept(true)> ints{places};
+  const auto add = [&](const ParticleField& field, int, auto& array) {
     if (!holds(field)) return;
     const auto all = static_cast<std::size_t>(before + more);
     if (field.kept == Kept::within_step) return array.resize(all);
     grow(array, all);
-    using Number = std::remove_pointer_t<decltype(array.data())>;
-    for_each(device_, before, CopyMarked<Number>{places, array.data()});
+    auto& copies = one_for(array.data(), reals, ints);
+    copies.arrays[copies.count++] = array.data();
   };
-  visit_particle_fields(copy, arrays_);
+  visit_particle_fields(add, arrays_);
+  for_each(device_, before, reals);
+  for_each(device_, before, ints);
   count_ += more;
   for_each(device_, before, Halve<Real>{grid, view(), places, needs_.affine_transfer});
   return true;

@@ -16,6 +16,12 @@ struct AddTo {
   TALUS_HD void operator()(int i) const { numbers[i] += amount; }
 };
 
+struct MultiplyBy {
+  int* numbers;
+  int factor;
+  TALUS_HD void operator()(int i) const { numbers[i] *= factor; }
+};
+
 class Recordings : public InEachPlace {
  protected:
   template <class Device>
@@ -36,6 +42,17 @@ class Recordings : public InEachPlace {
     amount = 10;
     recording.repeat(3, body);
     EXPECT_EQ(numbers.download()[99], 36) << "a kernel with new arguments was not recorded anew";
+    recording.forget();
+    recording.repeat(4, [&] {
+      body();
+      for_each(device, 50, AddTo{numbers.data(), 1000});
+    });
+    EXPECT_EQ(numbers.download()[99], 76) << "a recording of more kernels was not recorded anew";
+    EXPECT_EQ(numbers.download()[49], 4076);
+    recording.forget();
+    recording.repeat(2, [&] { for_each(device, 100, MultiplyBy{numbers.data(), 2}); });
+    EXPECT_EQ(numbers.download()[49], 4 * 4076) << "another kernel was not recorded anew";
+    EXPECT_EQ(numbers.download()[99], 4 * 76);
   }
 };
 
