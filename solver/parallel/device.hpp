@@ -93,19 +93,17 @@ void fill_zero(const GpuDevice& device, void* memory, std::size_t bytes);
 
 /// Makes the device's GPU the one that this thread's CUDA calls mean.
 void gpu_select(const GpuDevice& device);
-/// Starts a kernel on the device, or adds it to the recording that is under way. `arguments`: the place of each.
-/// Throws std::runtime_error where it cannot be started.
-void gpu_start(const GpuDevice& device, const char* where, const void* kernel, int blocks, int threads,
-               void** arguments);
+/// Throws std::runtime_error where the last start of a kernel failed.
+void gpu_check_launch(const char* where);
+/// True where a kernel may come onto the device before the one before it has ended.
+bool gpu_starts_early(const GpuDevice& device);
 
-class GpuGraph;  ///< kernels that are started as a whole
-
-/// Kernels that are started on the device from here on become part of `graph`, and are not run. Of a graph that was
-/// recorded before, which may be null, the arguments change.
-void gpu_begin_recording(const GpuDevice& device, std::shared_ptr<GpuGraph>& graph);
-/// Ends the recording. Returns false where the graph had other kernels before: it is empty, to be recorded again.
-bool gpu_end_recording(const GpuDevice& device);
-void gpu_replay(const GpuDevice& device, GpuGraph& graph);
+/// What is started on the device from here on is recorded, and not done.
+void gpu_begin_recording(const GpuDevice& device);
+/// Ends the recording and returns it as a graph; `before`, an earlier one or null, is updated or destroyed.
+void* gpu_end_recording(const GpuDevice& device, void* before);
+void gpu_replay(const GpuDevice& device, void* graph);
+void gpu_drop(void* graph);
 
 }  // namespace detail
 }  // namespace talus

@@ -49,22 +49,41 @@ __global__ __launch_bounds__(Kernel::most_threads, Kernel::least_blocks) void ru
   run_one(kernel);
 }
 
-/// Starts a kernel that opens with begin_kernel().
+/// How a kernel is laid out on a GPU.
+struct LaunchShape {
+  CUstream_st* stream;
+  int blocks, threads;
+  bool early;  ///< it may come onto the GPU while the one before it is ending
+};
+
+/// Starts a kernel that opens with begin_kernel(); cudaGetLastError() reports what fails.
 template <class... Parameters>
-void launch(const GpuDevice& device, const char* where, int blocks, int threads, void (*kernel)(Parameters...),
+void launch(const LaunchShape& shape, void (*kernel)(Parameters...),
             const std::type_identity_t<Parameters>&... arguments) {
-  const void* list[] = {&arguments...};
-  gpu_start(device, where, reinterpret_cast<const void*>(kernel), blocks, threads, const_cast<void**>(list));
+  cudaLaunchAttribute early{};
+  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  early.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t config{};
+  config.gridDim = dim3(static_cast<unsigned>(shape.blocks));
+  config.blockDim = dim3(static_cast<unsigned>(shape.threads));
+  config.stream = shape.stream;
+  config.attrs = &early;
+  constexpr int small = 200000;  // threads; with more, those that wait are in the way
+  config.numAttrs = shape.early && shape.blocks * static_cast<long>(shape.threads) < small ? 1 : 0;
+  static_cast<void>(cudaLaunchKernelEx(&config, kernel, arguments...));
 }
 
 /// Starts a kernel on the device.
 template <class Kernel>
 void gpu_launch(const GpuDevice& device, const char* where, int blocks, int threads, const Kernel& kernel) {
+  gpu_select(device);
+  const LaunchShape shape{device.stream(), blocks, threads, gpu_starts_early(device)};
   if constexpr (requires { Kernel::least_blocks; }) {
-    launch(device, where, blocks, threads, run_dense_kernel<Kernel>, kernel);
+    launch(shape, run_dense_kernel<Kernel>, kernel);
   } else {
-    launch(device, where, blocks, threads, run_kernel<Kernel>, kernel);
+    launch(shape, run_kernel<Kernel>, kernel);
   }
+  gpu_check_launch(where);
 }
 
 }  // namespace detail

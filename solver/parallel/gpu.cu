@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "common/error.hpp"
 #include "solver/parallel/host_room.hpp"
@@ -57,7 +56,6 @@ GpuState::GpuState(int gpu) : index(gpu) {
 GpuState::~GpuState() {
   (void)cudaSetDevice(index);
   (void)cudaStreamSynchronize(stream);
-  graphs.clear();
   scratch.reset();
   for (cudaEvent_t event : free_marks) (void)cudaEventDestroy(event);
   if (locked.memory) (void)cudaFreeHost(locked.memory);
@@ -154,7 +152,6 @@ void download(const GpuDevice& device, void* host, const void* from, std::size_t
 }
 
 void fill_zero(const GpuDevice& device, void* memory, std::size_t bytes) {
-  if (device.state().recording) throw std::logic_error("a recording holds kernels alone");
   device.state().select();
   check_cuda(cudaMemsetAsync(memory, 0, bytes, device.stream()), "fill");
 }
@@ -179,123 +176,40 @@ void give_back_host(const GpuDevice& device, void* memory, std::size_t bytes) no
 }
 
 void gpu_select(const GpuDevice& device) { device.state().select(); }
+void gpu_check_launch(const char* where) { check_cuda(cudaGetLastError(), where); }
+bool gpu_starts_early(const GpuDevice& device) { return device.state().starts_early; }
 
-void gpu_start(const GpuDevice& device, const char* where, const void* kernel, int blocks, int threads,
-               void** arguments) {
-  constexpr int small = 200000;  // threads; with more, those that wait are in the way
-  GpuState& state = device.state();
-  const dim3 grid(static_cast<unsigned>(blocks)), block(static_cast<unsigned>(threads));
-  const bool early = state.starts_early && blocks * static_cast<long>(threads) < small;
-  if (state.recording)
-    return state.recording->add_kernel({const_cast<void*>(kernel), grid, block, 0, arguments, nullptr}, early);
-  state.select();
-  cudaLaunchAttribute attribute{};
-  attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  attribute.val.programmaticStreamSerializationAllowed = 1;
-  cudaLaunchConfig_t config{};
-  config.gridDim = grid;
-  config.blockDim = block;
-  config.stream = state.stream;
-  config.attrs = &attribute;
-  config.numAttrs = early ? 1 : 0;
-  check_cuda(cudaLaunchKernelExC(&config, kernel, arguments), where);
-}
-
-void GpuGraph::clear() {
-  if (executable_ != nullptr) (void)cudaGraphExecDestroy(executable_);
-  if (graph_ != nullptr) (void)cudaGraphDestroy(graph_);
-  executable_ = nullptr;
-  graph_ = nullptr;
-  nodes_.clear();
-}
-
-void GpuGraph::begin() {
-  if (graph_ == nullptr) check_cuda(cudaGraphCreate(&graph_, 0), "graph");
-  next_ = 0;
-  fits_ = true;
-}
-
-bool GpuGraph::changes(bool is_kernel, bool early) {
-  fits_ = fits_ && next_ < nodes_.size() && nodes_[next_].is_kernel == is_kernel && nodes_[next_].early == early;
-  return fits_;
-}
-
-void GpuGraph::append(const Node& node) {
-  if (!nodes_.empty()) {
-    const Node& before = nodes_.back();
-#if CUDART_VERSION >= 12030
-    cudaGraphEdgeData edge{};
-    if (before.is_kernel && node.early) {
-      edge.from_port = cudaGraphKernelNodePortProgrammatic;
-      edge.type = cudaGraphDependencyTypeProgrammatic;
-    }
-#endif
-#if CUDART_VERSION >= 13000
-    check_cuda(cudaGraphAddDependencies(graph_, &before.node, &node.node, &edge, 1), "graph");
-#elif CUDART_VERSION >= 12030
-    check_cuda(cudaGraphAddDependencies_v2(graph_, &before.node, &node.node, &edge, 1), "graph");
-#else
-    check_cuda(cudaGraphAddDependencies(graph_, &before.node, &node.node, 1), "graph");
-#endif
-  }
-  nodes_.push_back(node);
-}
-
-void GpuGraph::add_kernel(cudaKernelNodeParams kernel, bool early) {
-  if (executable_ != nullptr) {
-    if (changes(true, early))
-      fits_ = cudaGraphExecKernelNodeSetParams(executable_, nodes_[next_++].node, &kernel) == cudaSuccess;
-    return;
-  }
-  Node node{nullptr, true, early};
-  check_cuda(cudaGraphAddKernelNode(&node.node, graph_, nullptr, 0, &kernel), "graph");
-  append(node);
-}
-
-void GpuGraph::add_mark(cudaEvent_t event) {
-  if (executable_ != nullptr) {
-    if (changes(false, false))
-      fits_ = cudaGraphExecEventRecordNodeSetEvent(executable_, nodes_[next_++].node, event) == cudaSuccess;
-    return;
-  }
-  Node node{nullptr, false, false};
-  check_cuda(cudaGraphAddEventRecordNode(&node.node, graph_, nullptr, 0, event), "graph");
-  append(node);
-}
-
-bool GpuGraph::end() {
-  if (executable_ == nullptr) {
-    check_cuda(cudaGraphInstantiate(&executable_, graph_, 0), "graph");
-    return true;
-  }
-  if (fits_ && next_ == nodes_.size()) return true;
-  (void)cudaGetLastError();
-  clear();
-  return false;
-}
-
-void GpuGraph::launch(cudaStream_t stream) { check_cuda(cudaGraphLaunch(executable_, stream), "graph"); }
-
-/// To make a graph and to destroy it takes longer than to give it other arguments.
-static std::shared_ptr<GpuGraph> unused_graph(GpuState& state) {
-  for (const auto& one : state.graphs)
-    if (one.use_count() == 1) return one;
-  return state.graphs.emplace_back(std::make_shared<GpuGraph>());
-}
-
-void gpu_begin_recording(const GpuDevice& device, std::shared_ptr<GpuGraph>& graph) {
+void gpu_begin_recording(const GpuDevice& device) {
   GpuState& state = device.state();
   state.select();
-  if (!graph) graph = unused_graph(state);
-  graph->begin();
-  state.recording = graph;
+  check_cuda(cudaStreamBeginCapture(state.stream, cudaStreamCaptureModeRelaxed), "begin of a recording");
+  state.recording = true;
 }
 
-bool gpu_end_recording(const GpuDevice& device) { return std::exchange(device.state().recording, nullptr)->end(); }
+void* gpu_end_recording(const GpuDevice& device, void* before) {
+  GpuState& state = device.state();
+  state.select();
+  state.recording = false;
+  cudaGraph_t graph = nullptr;
+  check_cuda(cudaStreamEndCapture(state.stream, &graph), "end of a recording");
+  auto executable = static_cast<cudaGraphExec_t>(before);
+  cudaGraphExecUpdateResultInfo info;
+  if (executable && cudaGraphExecUpdate(executable, graph, &info) != cudaSuccess) {
+    (void)cudaGetLastError();
+    check_cuda(cudaGraphExecDestroy(executable), "graph");
+    executable = nullptr;
+  }
+  if (!executable) check_cuda(cudaGraphInstantiate(&executable, graph, 0), "graph");
+  check_cuda(cudaGraphDestroy(graph), "graph");
+  return executable;
+}
 
-void gpu_replay(const GpuDevice& device, GpuGraph& graph) {
+void gpu_replay(const GpuDevice& device, void* graph) {
   device.state().select();
-  graph.launch(device.stream());
+  check_cuda(cudaGraphLaunch(static_cast<cudaGraphExec_t>(graph), device.stream()), "graph");
+}
+void gpu_drop(void* graph) {
+  if (graph) (void)cudaGraphExecDestroy(static_cast<cudaGraphExec_t>(graph));
 }
 
 void* gpu_mark(const GpuDevice& device) {
@@ -308,10 +222,9 @@ void* gpu_mark(const GpuDevice& device) {
     event = state.free_marks.back();
     state.free_marks.pop_back();
   }
-  if (state.recording)
-    state.recording->add_mark(event);
-  else
-    check_cuda(cudaEventRecord(event, state.stream), "event");
+  check_cuda(
+      cudaEventRecordWithFlags(event, state.stream, state.recording ? cudaEventRecordExternal : cudaEventRecordDefault),
+      "event");
   return event;
 }
 double gpu_seconds_between(void* first, void* second) {
@@ -352,10 +265,12 @@ void fill_zero(const GpuDevice&, void*, std::size_t) { absent(); }
 void* lend_host(const GpuDevice&, std::size_t) { absent(); }
 void give_back_host(const GpuDevice&, void*, std::size_t) noexcept {}
 void gpu_select(const GpuDevice&) { absent(); }
-void gpu_start(const GpuDevice&, const char*, const void*, int, int, void**) { absent(); }
-void gpu_begin_recording(const GpuDevice&, std::shared_ptr<GpuGraph>&) { absent(); }
-bool gpu_end_recording(const GpuDevice&) { absent(); }
-void gpu_replay(const GpuDevice&, GpuGraph&) { absent(); }
+void gpu_check_launch(const char*) {}
+bool gpu_starts_early(const GpuDevice&) { return false; }
+void gpu_begin_recording(const GpuDevice&) { absent(); }
+void* gpu_end_recording(const GpuDevice&, void*) { absent(); }
+void gpu_replay(const GpuDevice&, void*) { absent(); }
+void gpu_drop(void*) {}
 void* gpu_mark(const GpuDevice&) { absent(); }
 double gpu_seconds_between(void*, void*) { absent(); }
 void gpu_forget_mark(const GpuDevice&, void*) {}

@@ -64,38 +64,6 @@ struct LockedMemory {
   std::size_t used = few;
 };
 
-/// Kernels as the nodes of a CUDA graph, each after the one before it. It is made node by node and not captured from a
-/// stream: a capture waits for the calls of all other threads, which holds up runs side by side.
-class detail::GpuGraph {
- public:
-  GpuGraph() = default;
-  GpuGraph(const GpuGraph&) = delete;
-  GpuGraph& operator=(const GpuGraph&) = delete;
-  ~GpuGraph() { clear(); }
-
-  void begin();  ///< begins a recording: nodes there are take new arguments, in their order
-  /// `early`: it may come onto the GPU while the one before it is ending.
-  void add_kernel(cudaKernelNodeParams kernel, bool early);
-  void add_mark(cudaEvent_t event);
-  bool end();  ///< false, and empty, where the recording has other nodes than the one before
-  void launch(cudaStream_t stream);
-
- private:
-  struct Node {
-    cudaGraphNode_t node;
-    bool is_kernel, early;
-  };
-  bool changes(bool is_kernel, bool early);  ///< whether the next node is one that there is, and of that kind
-  void append(const Node& node);
-  void clear();
-
-  cudaGraph_t graph_ = nullptr;
-  cudaGraphExec_t executable_ = nullptr;
-  std::vector<Node> nodes_;
-  std::size_t next_ = 0;
-  bool fits_ = true;
-};
-
 /// The stream, scratch memory, events and profile of one GpuDevice.
 struct GpuState {
   explicit GpuState(int gpu);
@@ -108,9 +76,7 @@ struct GpuState {
 
   int index;
   cudaStream_t stream = nullptr;
-  bool starts_early = false;
-  std::shared_ptr<detail::GpuGraph> recording;  ///< the graph that is recorded now
-  std::vector<std::shared_ptr<detail::GpuGraph>> graphs;  ///< all: one that nobody holds any more serves again
+  bool starts_early = false, recording = false;
   bool is_idle = true;  ///< nothing was started on the stream since the host waited for it
   LockedMemory locked;
   std::multimap<std::size_t, void*> host_rooms;  ///< page-locked memory that nobody has, by its size [bytes]

@@ -4,7 +4,6 @@
 // takes a fraction of the time of starting its kernels one by one.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -37,7 +36,10 @@ class Recording<GpuDevice> {
   explicit Recording(GpuDevice device, int plain = 1) : device_(std::move(device)), plain_(plain) {}
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
-  ~Recording() { Profile::forget(device_, marks_); }
+  ~Recording() {
+    detail::gpu_drop(graph_);
+    Profile::forget(device_, marks_);
+  }
 
   /// The method does body() as often as `times`. It must start the same kernels with the same arguments on the
   /// recording's device every time, until forget() is called, and neither upload nor download. The first times are done
@@ -49,7 +51,7 @@ class Recording<GpuDevice> {
     for (int first = times < 2 * plain_ ? times : plain_; !recorded_ && first > 0; --first, --times) body();
     if (times > 0 && measured) return repeat_measured(times, body);
     if (!recorded_ && times > 0) record(body);
-    for (int t = 0; t < times; ++t) detail::gpu_replay(device_, *graph_);
+    for (int t = 0; t < times; ++t) detail::gpu_replay(device_, graph_);
   }
   void forget() { recorded_ = false; }  ///< gives up the recording, because arguments have changed
 
@@ -57,13 +59,12 @@ class Recording<GpuDevice> {
   template <class Body>
   void record(const Body& body) {
     Profile& profile = device_.profile();
-    for (recorded_ = false; !recorded_; recorded_ = detail::gpu_end_recording(device_)) {
-      Profile::forget(device_, marks_);
-      profile.begin_recording();
-      detail::gpu_begin_recording(device_, graph_);
-      body();
-      marks_ = profile.end_recording();
-    }
+    profile.begin_recording();
+    detail::gpu_begin_recording(device_);
+    body();
+    graph_ = detail::gpu_end_recording(device_, graph_);
+    marks_ = profile.end_recording();
+    recorded_ = true;
     marked_ = profile.with_kernels();
   }
   /// With marks around its kernels, each time waited for.
@@ -75,10 +76,11 @@ class Recording<GpuDevice> {
     if (!recorded_) {
       synchronise(device_);
       profile.settle(device_);  // what was started one by one until here
+      Profile::forget(device_, marks_);
       record(body);
     }
     for (int t = 0; t < times; ++t) {
-      detail::gpu_replay(device_, *graph_);
+      detail::gpu_replay(device_, graph_);
       synchronise(device_);
       profile.take(marks_);
     }
@@ -86,7 +88,7 @@ class Recording<GpuDevice> {
 
   GpuDevice device_;
   int plain_;
-  std::shared_ptr<detail::GpuGraph> graph_;
+  void* graph_ = nullptr;
   std::vector<Profile::Mark> marks_;  ///< of its kernels, under --profile
   bool recorded_ = false, marked_ = false;
 };
