@@ -106,16 +106,26 @@ test_an_array_of_jobs_computes_the_parts() {
   grep -q "it holds this very part already" again.1.log || fail "a finished part was computed again"
 }
 
-# The script is a loop's body without Slurm.
+# Without Slurm, PARTS and PART say which part it is. A process that is sent a part which another one computes waits.
 test_the_script_runs_without_slurm() {
   ensemble_of_ten
-  local part
-  for part in 0 1 2; do
-    expect_exit 0 env TALUS_BIN="$bin" PARTS=3 PART=$part "$TALUS_SOURCE/pipelines/ensemble.sbatch" recipe.toml out
-  done
+  local part script=$TALUS_SOURCE/pipelines/ensemble.sbatch
+  export TALUS_BIN=$bin PARTS=3
+  for part in 0 1 2; do expect_exit 0 env PART=$part "$script" recipe.toml out --on cpu; done
   [[ -s out/counts.6-10.h5 ]] || fail "the last part is missing"
-  expect_exit 2 env TALUS_BIN="$bin" "$TALUS_SOURCE/pipelines/ensemble.sbatch" /dev/null out
-  expect_words "names no number of members"
+  rm out/counts.*
+  local slow=(--on cpu --threads 1 --set solve.end_time_s=100)
+  PART=2 "$script" recipe.toml out "${slow[@]}" 2>first.log >/dev/null &
+  for ((part = 0; part < 100; ++part)); do
+    if grep -qs process out/.talus.6-10.lock; then break; fi
+    sleep 0.01
+  done
+  expect_exit 0 env PART=2 "$script" recipe.toml out "${slow[@]}"
+  expect_words "it holds this very part already"
+  wait $! || fail "the first process failed: $(<first.log)"
+  expect_exit 2 "$script" /dev/null out
+  expect_exit 2 "$script" recipe.toml out --set ensemble.members=0
+  expect_words "there are no members to divide"
 }
 
 run_test "$@"
