@@ -48,8 +48,9 @@ package=(dpkg-dev file mmdebstrap)   # CPack asks file which programs there are
 three_d=(paraview python3-paraview python3-h5py python3-numpy python3-gdal xvfb xauth)
 
 # The report is opened in a browser by its test: Debian's. Ubuntu's packages of these names only lead to the snap store,
-# whose browser cannot be driven; the test says so there and is skipped.
-if grep -qx 'ID=debian' /etc/os-release; then tests+=(chromium chromium-driver); fi
+# whose browser cannot be driven; the test says so there and is skipped. Dask, for ensembles over several machines, was
+# tried on Debian alone.
+if grep -qx 'ID=debian' /etc/os-release; then tests+=(chromium chromium-driver python3-distributed); fi
 
 fail() { echo "tools/install-dependencies.sh: $*" >&2; exit 1; }
 

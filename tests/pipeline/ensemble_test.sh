@@ -38,27 +38,6 @@ TOML
   [[ -s out/members.h5 ]] || fail "there is no table of members"
 }
 
-# same_counts A B...: the counts of A are those of the other files together.
-same_counts() {
-  /usr/bin/python3 - "$@" <<'PYTHON' || fail "the counts of $1 are not those of ${*:2}"
-import sys
-import h5py
-import numpy as np
-
-whole, parts = h5py.File(sys.argv[1]), [h5py.File(name) for name in sys.argv[2:]]
-compared = 0
-for name, group in whole["maps"].items():
-    fields = ["reached", "sum", "sum_of_squares"] + ["exceeded/" + n for n in group["exceeded"]]
-    for field in fields:
-        total = sum(part[f"maps/{name}/{field}"][()].astype(np.int64) for part in parts)
-        if not np.array_equal(group[field][()], total):
-            sys.exit(f"{name}/{field} differs in {np.sum(group[field][()] != total)} cells")
-        compared += int(np.sum(total))
-if compared == 0:
-    sys.exit("nothing was counted")
-PYTHON
-}
-
 test_parts_add_up_to_the_whole() {
   ensemble preprocess.thickness_factor
   expect_exit 0 solve
