@@ -20,6 +20,7 @@ foreach(_recipe IN LISTS _recipes)
     PATTERN out EXCLUDE PATTERN "*.toml" PATTERN "*.md" PATTERN "*.csv" PATTERN "*.geojson" PATTERN "*.tif")
 endforeach()
 install(FILES pipelines/Makefile DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
+install(PROGRAMS pipelines/ensemble.sbatch pipelines/ensemble.py DESTINATION ${TALUS_SHARE}/pipelines COMPONENT runtime)
 file(RELATIVE_PATH _bin ${CMAKE_INSTALL_FULL_DATADIR}/talus/pipelines ${CMAKE_INSTALL_FULL_BINDIR})
 file(WRITE ${CMAKE_BINARY_DIR}/installed.mk "# Installed: the programs, and where the user stands.
 BIN  ?= $(CURDIR)/${_bin}

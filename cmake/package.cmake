@@ -34,8 +34,8 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS fonts-dejavu-core)   # the letters of map.png
 # make chains the stages of a pipeline; without OpenBLAS the reference BLAS factorises, several times as slowly.
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "make, libopenblas0-serial")
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS
-  "talus-doc, ffmpeg, qgis, paraview, python3-h5py, python3-xarray, python3-rasterio${TALUS_PACKAGE_SUGGESTS_MORE}")
+string(JOIN ", " CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS talus-doc ffmpeg qgis paraview python3-distributed python3-h5py
+  python3-xarray "python3-rasterio${TALUS_PACKAGE_SUGGESTS_MORE}")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONFLICTS ${TALUS_PACKAGE_OTHER})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_REPLACES ${TALUS_PACKAGE_OTHER})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_PROVIDES "${TALUS_PACKAGE_PROVIDES}")

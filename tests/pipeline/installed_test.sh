@@ -168,6 +168,7 @@ test_packages_ask_for_the_libraries_of_the_programs() {
   held=$(dpkg-deb -c "$package" | awk '{ print $6 }')
   for file in usr/bin/talus-solve usr/lib/talus/libtalus-openturns.so usr/share/man/man1/talus-solve.1.gz \
     usr/share/doc/talus/copyright usr/share/zsh/vendor-completions/_talus-solve \
+    usr/share/talus/pipelines/ensemble.py usr/share/talus/pipelines/ensemble.sbatch \
     usr/share/talus/pipelines/synthetic-valley/recipe.toml usr/share/talus/styles/thick/deposit_thickness.qml; do
     grep -qE "^\./${file/doc\/talus/doc/talus(-gpu)?}$" <<<"$held" || fail "$package holds no $file"
   done
