@@ -78,6 +78,18 @@ void tell_of_members(const Ensemble& ensemble) {
                      ensemble.table.slides ? ensemble.table.names_of(edge, 12) : member_list(edge)));
 }
 
+/// Refuses (NumericalError) an ensemble of which more failed than failed_share allows: parts are judged by themselves.
+void judge_failed(const EnsembleOptions& options, const Ensemble& ensemble) {
+  const EnsembleCounts& counts = ensemble.counts;
+  if (static_cast<double>(ensemble.failed()) <= options.may_fail(counts.members - counts.count(MemberState::left_out)))
+    return;
+  const MemberWords& first = counts.failures.front();
+  throw NumericalError(
+      options.too_many_failed(fmt::format("{} of {} members failed, the first is {}", ensemble.failed(), counts.members,
+                                          ensemble.table.name_of(first.member)),
+                              first.words));
+}
+
 std::string cell(const RowColumn& column, std::size_t member) {
   const double value = column.values[member];
   if (std::isnan(value)) return "";
@@ -112,16 +124,6 @@ ScoreNames names_of_scores(const EnsembleCounts& counts, const Survey& survey, c
   if (!kept && (threshold != options.deposit_threshold || !seen)) names.deposit = "_by_cells";
   if (survey.deposit_is_change) names.deposit = names.thickness = "_outside_release";
   return names;
-}
-
-/// The surveyed deposit where members' footprints can be compared with it.
-std::vector<double> comparable_deposit(const Survey& survey, const EnsembleScene& scene) {
-  std::vector<double> deposit = survey.deposit;
-  if (!survey.deposit_is_change || deposit.empty()) return deposit;
-  const std::vector<double> released = on_grid({scene.grid, scene.release_thickness}, survey.grid);
-  for (std::size_t cell = 0; cell < deposit.size(); ++cell)
-    if (released[cell] > 0) deposit[cell] = nan;
-  return deposit;
 }
 
 /// The scores of all members against one survey, one column each.
@@ -233,6 +235,15 @@ void add_scores(MemberRows& rows, const Ensemble& ensemble, const Survey& survey
 
 }  // namespace
 
+std::vector<double> comparable_deposit(const Survey& survey, const EnsembleScene& scene) {
+  std::vector<double> deposit = survey.deposit;
+  if (!survey.deposit_is_change || deposit.empty()) return deposit;
+  const std::vector<double> released = on_grid({scene.grid, scene.release_thickness}, survey.grid);
+  for (std::size_t cell = 0; cell < deposit.size(); ++cell)
+    if (released[cell] > 0) deposit[cell] = nan;
+  return deposit;
+}
+
 std::vector<fs::path> ensemble_files(const fs::path& out) {
   const EnsemblePaths paths{out};
   std::vector<fs::path> files = paths.found_counts();
@@ -252,6 +263,7 @@ Ensemble read_ensemble(const StageContext& context) {
     throw DataError({fmt::format("{}: no member is counted", ensemble.files[1].string()),
                      fmt::format("{} failed and {} wait", ensemble.failed(), ensemble.waiting()),
                      "See what talus-solve said of them, mend the recipe, and run it again"});
+  judge_failed(ensemble_of(context.recipe), ensemble);
   tell_of_members(ensemble);
   return ensemble;
 }

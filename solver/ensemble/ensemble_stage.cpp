@@ -172,7 +172,7 @@ void judge_failures(const EnsembleCounts& counts, const Ensemble& e) {
   const auto failed = static_cast<double>(failures.size());
   if (failed == 0) return;
   warn("members-failed", fmt::format("{} of {} members failed; the counts are without them", failed, e.part.count()));
-  if (failed <= e.options.may_fail(e.part.count() - counts.count(MemberState::left_out))) return;
+  if (failed <= e.options.may_fail(counts.members - counts.count(MemberState::left_out))) return;
   throw NumericalError(e.options.too_many_failed(fmt::format("{:.0f} of {} members failed, the first is {}", failed,
                                                              e.part.count(), e.table.name_of(failures.front().member)),
                                                  failures.front().words));

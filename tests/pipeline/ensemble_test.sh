@@ -137,6 +137,28 @@ TOML
   expect_words "2 of 4 members failed; the counts are without them"
 }
 
+test_failures_of_parts_are_judged_together() {
+  scene
+  cat >>recipe.toml <<'TOML'
+
+[ensemble]
+members = 4
+design = "full-grid"
+levels = 4
+failed_share = 0.3
+
+[[ensemble.vary]]
+key = "solve.material.youngs_modulus_Pa"
+distribution = "discrete"
+values = [50.0, 60.0, 1e6, 2e6]
+TOML
+  expect_exit 0 preprocess
+  expect_exit 4 solve --members 0:2
+  for part in 0:1 1:2 2:4; do expect_exit 0 solve --members "$part"; done
+  expect_exit 4 postprocess
+  expect_words "2 of 4 members failed" "failed_share allows 30 %"
+}
+
 test_flags_without_an_ensemble_are_refused() {
   scene
   expect_exit 0 preprocess
