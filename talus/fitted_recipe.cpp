@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "talus/fitted_recipe.hpp"
 
+#include <cerrno>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "common/error.hpp"
 #include "common/recipe/edited.hpp"
@@ -26,6 +29,9 @@ FittedRecipe::FittedRecipe(const Request& request, std::string command)
       file_(fs::absolute(request.recipe).lexically_normal().parent_path() / "fitted.toml") {
   if (const auto there = text_if_there(file_); there && !there->starts_with(begins_with))
     throw DataError({file_.string() + ": it is there already", command_ + " did not write it", "Give it another name"});
+  if (const fs::path folder = file_.parent_path(); ::access(folder.c_str(), W_OK) != 0)
+    throw DataError({file_.string() + " cannot be written", std::generic_category().message(errno),
+                     "Copy the recipe into a folder of your own"});
 }
 
 fs::path FittedRecipe::write(std::vector<std::string> set, const std::vector<std::string>& lines) const {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -16,14 +17,6 @@ namespace {
 
 constexpr double edge = 2;              // deviations of the prior: what lies beyond is at its edge
 constexpr double large_loading = 0.35;  // of a key in a direction that is named
-
-/// The value below which a further draw lies with a probability `q` (Hyndman and Fan 1996, type 6).
-double quantile_of_draws(const std::vector<double>& sorted, double q) {
-  const auto n = static_cast<double>(sorted.size());
-  const double place = std::clamp(q * (n + 1) - 1, 0.0, n - 1);
-  const auto below = static_cast<std::size_t>(place), above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
 
 Quantiles quantiles_of(std::vector<double> values) {
   std::ranges::sort(values);
@@ -46,20 +39,36 @@ double evidence_error(const Posterior& draws) {
   return std::sqrt(std::max(0.0, variance));
 }
 
-std::string short_name(const std::string& key) {
-  const auto dot = key.rfind('.');
-  return dot == std::string::npos ? key : key.substr(dot + 1);
+/// The last parts of a key that no other key shares: "friction_angle_deg", "material.friction_angle_deg".
+std::string short_name(const std::string& key, const std::vector<KeySummary>& keys) {
+  for (auto dot = key.rfind('.'); dot != std::string::npos && dot > 0; dot = key.rfind('.', dot - 1)) {
+    const std::string end = key.substr(dot);
+    if (std::ranges::count_if(keys, [&](const KeySummary& one) { return one.key.ends_with(end); }) == 1)
+      return end.substr(1);
+  }
+  return key;
 }
 
-/// "friction_angle_deg and thickness_factor, the one higher and the other lower".
+/// "friction_angle_deg", "higher thickness_factor with lower friction_angle_deg".
 std::string direction_words(const Direction& direction, const std::vector<KeySummary>& keys) {
   std::vector<std::string> up, down;
   for (std::size_t n = 0; n < keys.size(); ++n)
     if (std::abs(direction.of_keys[n]) >= large_loading)
-      (direction.of_keys[n] > 0 ? up : down).push_back(short_name(keys[n].key));
+      (direction.of_keys[n] > 0 ? up : down).push_back(short_name(keys[n].key, keys));
   if (up.empty()) std::swap(up, down);
-  if (down.empty()) return fmt::format("{}", fmt::join(up, " and "));
-  return fmt::format("more {} with less {}", fmt::join(up, " and "), fmt::join(down, " and "));
+  if (up.size() + down.size() == 1) return up.front();
+  if (down.empty()) return fmt::format("higher {} together", fmt::join(up, " and "));
+  return fmt::format("higher {} with lower {}", fmt::join(up, " and "), fmt::join(down, " and "));
+}
+
+/// "0.7 m", "0.34".
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.2g}{}", value, unit == "1" ? "" : " " + unit);
+}
+
+std::string capital(std::string words) {
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  return words;
 }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
@@ -112,37 +121,38 @@ std::vector<std::string> conclusions(const PosteriorSummary& summary) {
   std::vector<std::string> said;
   for (const Direction& direction : summary.directions)
     if (direction.left > not_told)
-      said.push_back(fmt::format("The survey does not tell {}: {} of the doubt before it is left",
+      said.push_back(fmt::format("The survey does not determine {}: {} of the prior deviation is left.",
                                  direction_words(direction, summary.keys), percent(std::min(1.0, direction.left))));
   for (const KeySummary& key : summary.keys)
     if (std::abs(key.shift) > edge)
       said.push_back(
-          fmt::format("{} lies in the {} 5 % of its distribution in [[ensemble.vary]]: the truth may lie beyond. "
-                      "Widen it and calibrate again",
-                      short_name(key.key), key.shift > 0 ? "upper" : "lower"));
+          fmt::format("{} lies in the {} 5 % of its prior distribution: the true value may lie beyond. Widen "
+                      "[[ensemble.vary]] and calibrate again.",
+                      short_name(key.key, summary.keys), key.shift > 0 ? "upper" : "lower"));
   for (const DiscrepancySummary& one : summary.discrepancies) {
-    const std::string length = one.length > 0 ? fmt::format(", alike over {:.0f} m", one.length) : "";
+    const std::string length = one.length > 0 ? fmt::format(" over {:.0f} m", one.length) : "";
     const std::string beside =
-        one.survey_error > 0 ? fmt::format("{} the survey's error of {:.2g} {}",
-                                           one.deviation > one.survey_error ? "it dominates" : "it is smaller than",
-                                           one.survey_error, one.unit)
-                             : "the survey's error is not known, and is part of it";
-    said.push_back(
-        fmt::format("{}: the model is off by {:.2g} {}{}; {}", one.name, one.deviation, one.unit, length, beside));
+        one.survey_error > 0
+            ? fmt::format("{} than the survey's error of {}", one.deviation > one.survey_error ? "larger" : "smaller",
+                          with_unit(one.survey_error, one.unit))
+            : "including the survey's error, which is not known";
+    said.push_back(fmt::format("{}: the model's discrepancy is {}{}, {}.", capital(one.name),
+                               with_unit(one.deviation, one.unit), length, beside));
     if (one.at_most > 0.5)
       said.push_back(
-          fmt::format("{}: no run comes near the survey. The intervals are of a model that does not describe "
-                      "this event: look at release, terrain and law",
-                      one.name));
+          fmt::format("{}: no run comes near the survey. The intervals hold for a model that does not describe this "
+                      "event: check release, terrain and law.",
+                      capital(one.name)));
     if (one.at_least > 0.5)
       said.push_back(
-          fmt::format("{}: runs agree with the survey as well as can be told. If it is not a computed one, "
-                      "its error is larger than given",
-                      one.name));
+          fmt::format("{}: no discrepancy is found. Of a measured survey this is rare: check whether its stated error "
+                      "is too large.",
+                      capital(one.name)));
   }
   said.push_back(
-      fmt::format("Logarithm of the evidence: {:.1f}, standard error {:.1f} or more. Of recipes with the same survey "
-                  "that with the larger one explains it better; a difference of 3 is strong (Kass and Raftery 1995)",
+      fmt::format("Logarithm of the evidence: {:.1f}, standard error {:.1f} or more. Of two recipes with the same "
+                  "survey, the one with the larger evidence explains it better; a difference of 3 is strong (Kass and "
+                  "Raftery 1995).",
                   summary.log_evidence, summary.log_evidence_error));
   return said;
 }

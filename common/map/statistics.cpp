@@ -38,6 +38,13 @@ double quantile(std::vector<double> values, double q) {
   return low + (place - static_cast<double>(below)) * (high - low);
 }
 
+double quantile_of_draws(const std::vector<double>& sorted, double q) {
+  const auto n = static_cast<double>(sorted.size());
+  const double place = std::clamp(q * (n + 1) - 1, 0.0, n - 1);
+  const auto below = static_cast<std::size_t>(place), above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
 double p99_of_positive(const std::vector<double>& values) {
   std::vector<double> positive;
   std::copy_if(values.begin(), values.end(), std::back_inserter(positive), [](double v) { return v > 0; });

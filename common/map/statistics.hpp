@@ -35,6 +35,9 @@ std::string grouped(std::string number, const char* between);
 /// The value below which a share `q` of the values lies, linear between them (Hyndman and Fan 1996, type 7); NaN: none.
 double quantile(std::vector<double> values, double q);
 
+/// The value below which a further draw lies with a probability `q`, of draws in growing order (type 6).
+double quantile_of_draws(const std::vector<double>& sorted, double q);
+
 /// The value below which 99 % of the values above 0 lie, as quantile() has it: what a map holds where there is
 /// anything, without its few largest cells. NaN where there is none.
 double p99_of_positive(const std::vector<double>& values);

@@ -25,12 +25,6 @@ Compared compared_in(const BlockMeans& blocks, const char* name, const char* uni
   return compared;
 }
 
-/// Deviation of the survey's error in each cell [m].
-std::vector<double> deviation_of(const SurveyError& error, std::size_t cells) {
-  constexpr double sure = 5;  // the noise over its standard deviation
-  return error.sigma.empty() ? std::vector<double>(cells, error.noise / sure) : error.sigma;
-}
-
 /// Half the difference of a cell's neighbours along x or y; 0 where one is not known.
 std::vector<double> slope(const MapGrid& grid, const std::vector<double>& values, int x, int y) {
   std::vector<double> slopes(values.size(), 0.0);
@@ -59,6 +53,11 @@ std::vector<char> cells_above(const std::vector<double>& values, double threshol
 bool holds_any(const std::vector<char>& cells) { return std::ranges::find(cells, 1) != cells.end(); }
 
 }  // namespace
+
+std::vector<double> deviation_of(const SurveyError& error, std::size_t cells) {
+  constexpr double sure = 5;  // the noise over its standard deviation
+  return error.sigma.empty() ? std::vector<double>(cells, error.noise / sure) : error.sigma;
+}
 
 std::vector<double> covered_shares(const Footprint& footprint, const MapGrid& from, const MapGrid& to) {
   const std::vector<std::uint8_t> cells = cells_of(footprint, from.count());
@@ -102,7 +101,7 @@ void Comparison::add_thickness(const std::vector<double>& deposit, const std::ve
   for (std::size_t cell = 0; cell < measured.size(); ++cell)
     if (!std::isfinite(deposit[cell])) measured[cell] = nan;
   const BlockMeans blocks(survey_.grid, measured, inside, counts_.scene.grid.cell);
-  Compared compared = compared_in(blocks, "thickness of the deposit", "m", measured);
+  Compared compared = compared_in(blocks, thickness_compared, "m", measured);
   compared.error = blocks.covariance(deviation_of(survey_.error, measured.size()), survey_.error.correlation_length);
   const auto simulate = [this, blocks](std::size_t, const OnSurveyGrid* kept) {
     return kept == nullptr ? Simulated{} : simulated_map(survey_.grid, blocks, kept->change);

@@ -17,6 +17,12 @@ namespace talus::postprocess {
 /// A footprint on another grid, as the share of each cell that it covers; where its grid ends, nothing.
 std::vector<double> covered_shares(const Footprint& footprint, const MapGrid& from, const MapGrid& to);
 
+/// What a thickness is called among what is compared.
+inline constexpr const char* thickness_compared = "thickness of the deposit";
+
+/// Standard deviation of the survey's error in each cell [m].
+std::vector<double> deviation_of(const SurveyError& error, std::size_t cells);
+
 class Comparison {
  public:
   /// What a survey gives of the members' runs: the deposit's thickness where it was measured and members keep theirs,

@@ -72,6 +72,9 @@ struct MemberRows {
   Json likelihood;  ///< likelihood.json (comparison.hpp); null: nothing is compared with a survey
 };
 
+/// The surveyed deposit where members' footprints can be compared with it: of a change not where there was a release.
+std::vector<double> comparable_deposit(const Survey& survey, const EnsembleScene& scene);
+
 /// The state of a member in words: "left out".
 const char* word_of(MemberState state);
 

@@ -67,6 +67,7 @@ Json run_json(const EnsemblePageInput& input) {
   json["sampled"] = is_sample(ensemble);
   const std::vector<std::int64_t> at_edge = counts.at_edge();
   json["at_edge"] = at_edge.empty() ? Json() : Json(names_at_edge(ensemble, at_edge));
+  json["prior"] = fact(ensemble.table.provenance, prior_of_members);
   json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);
   json["accepted"] = Json::array();
   for (const Finding& f : insisted_on(ensemble)) json["accepted"].push_back({f.name, f.message});
@@ -178,6 +179,7 @@ std::string ensemble_html(const EnsemblePageInput& input) {
   data["sensitivity"] = sensitivity_json(input);
   data["convergence"] = is_sample(input.ensemble) ? convergence_json(input.rows) : Json::array();
   data["budget"] = input.budget == nullptr ? Json() : budget_json(*input.budget);
+  data["calibration"] = input.calibration;
   data["stages"] = stages_json(input.stages);
   for (const char* part : {"run", "stages", "budget"}) leave_out_folders(data[part]);
   return filled_page(ensemble_template(),

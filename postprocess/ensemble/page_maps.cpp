@@ -56,6 +56,22 @@ Json spreads(const PageMaps& page, const BudgetTable& budget) {
            })}};
 }
 
+Json residuals(const PageMaps& page, const std::vector<double>& residual) {
+  return {{"id", "residual"},
+          {"title", "Residual after the survey"},
+          {"unit", ""},
+          {"early", false},
+          {"shares", nullptr},
+          {"statistics", packed_maps(1, [&](std::size_t) {
+             return MapOnPage{"residual_sigma",
+                              "Surveyed less mean thickness, in standard deviations",
+                              "",
+                              nan,
+                              residual_style(),
+                              page.shown(residual, MergedCells::mean)};
+           })}};
+}
+
 /// Outlines are made of so many members before it is asked whether they are enough for the page.
 constexpr std::size_t members_at_a_time = 256;
 
@@ -191,6 +207,7 @@ Json ensemble_maps_json(const EnsemblePageInput& input, const Window& window) {
         quantity_json(what, shares.empty() ? Json() : stack(page, shares, MergedCells::largest),
                       stack(page, statistics, what.early ? MergedCells::smallest : MergedCells::largest)));
   }
+  if (!input.residual.empty()) json["quantities"].push_back(residuals(page, input.residual));
   if (all.back().kind == Kind::hazard) json["hazard"] = stack(page, {all.back()}, MergedCells::largest);
   return json;
 }

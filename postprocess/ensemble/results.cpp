@@ -3,7 +3,9 @@
 #include "postprocess/ensemble/results.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
+#include "postprocess/ensemble/residual.hpp"
 
 namespace talus::postprocess {
 namespace fs = std::filesystem;
@@ -107,6 +110,34 @@ Window reached_window(const Ensemble& ensemble, const Options& options) {
   return affected_window(maps, anywhere, std::nullopt);
 }
 
+/// A map beside those of counts, and what it means.
+struct OtherMap {
+  const char* name;
+  std::string title;
+  const char *unit, *meaning, *no_data;
+  RasterStyle style;
+};
+
+void write_other(Writing& writing, ProjectGroup& group, const Raster& raster, const OtherMap& map) {
+  Facts facts = ensemble_facts(writing.ensemble);
+  facts.insert(facts.end(), {{"QUANTITY", map.title}, {"MEANING", map.meaning}, {"NODATA_MEANING", map.no_data}});
+  const fs::path file = writing.folder / (std::string(map.name) + ".tif");
+  write_cog(file, raster, raster_tags(map.title, map.unit, std::move(facts)));
+  writing.files.insert(writing.files.end(), {file, write_qgis_style(file, map.style)});
+  std::string title = map.title;
+  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
+  if (map.unit != std::string_view("1")) title += fmt::format(" [{}]", map.unit);
+  group.layers.push_back({title, file.filename().string(), false, map.style});
+}
+
+void write_residual(Writing& writing, const std::vector<double>& residual) {
+  write_other(writing, writing.statistics, {writing.ensemble.counts.scene.grid, residual},
+              {"residual_sigma", "residual of the deposit thickness in standard deviations", "1",
+               "surveyed less mean thickness, over the root of the squared survey error, discrepancy of the model and "
+               "spread of the draws",
+               "not surveyed, or no deposit in either", residual_style()});
+}
+
 void write_ground(Writing& writing) {
   const EnsembleScene& scene = writing.ensemble.counts.scene;
   const fs::path terrain = writing.folder / "terrain.tif";
@@ -187,6 +218,7 @@ struct EnsembleResults {
   const std::optional<Survey>& survey;
   bool members_only;
   const MemberRows rows = member_rows(ensemble, options, survey);
+  const std::vector<double> residual = residual_in_sigma(ensemble, survey, rows, options);
   const std::string used = used_text();
 
   void write() {
@@ -226,11 +258,18 @@ struct EnsembleResults {
   void write_page(const char* name, const std::vector<std::pair<std::string, Sensitivity>>& sensitive,
                   const BudgetTable* budget) {
     if (!options.writes("report")) return;
-    EnsemblePageInput input{ensemble, options, survey, rows, sensitive, {}, budget};
+    EnsemblePageInput input{ensemble, options, survey, rows, sensitive, {}, budget, residual, calibration()};
     for (const char* before : {"preprocess", "solve"})
       input.stages.push_back({before, text_if_there(context.out / (std::string(before) + ".used.toml"))});
     input.stages.push_back({"postprocess", used});
     write(name, ensemble_html(input));
+  }
+  /// What the page shows of calibration.json, which holds each run.
+  Json calibration() const {
+    if (ensemble.table.design != design_name(Design::posterior)) return {};
+    const auto json = Json::parse(text_if_there(context.out / "calibration.json").value_or(""), nullptr, false);
+    if (!json.is_object() || !json.contains("summary")) return {};
+    return {{"prior", json["prior"]}, {"summary", json["summary"]}};
   }
   /// The last result: where it lies, all are there.
   template <class Write>
@@ -243,7 +282,7 @@ struct EnsembleResults {
   void write_probabilities() {
     const auto sensitive = sensitivities(ensemble, rows);
     write("sensitivity.csv", sensitivity_csv(sensitive));
-    add(write_probability_maps(made_folder("probability"), ensemble, options));
+    add(write_probability_maps(made_folder("probability"), ensemble, options, residual));
     write_page("ensemble.html", sensitive, nullptr);
     write_netcdf("probability.nc", write_probability_netcdf);
   }
@@ -279,13 +318,17 @@ std::string found_words(const Ensemble& ensemble) {
 
 }  // namespace
 
-std::vector<fs::path> write_probability_maps(const fs::path& folder, const Ensemble& ensemble, const Options& options) {
+std::vector<fs::path> write_probability_maps(const fs::path& folder, const Ensemble& ensemble, const Options& options,
+                                             const std::vector<double>& residual) {
   Writing writing{folder, ensemble, options};
   write_maps(writing);
+  if (!residual.empty()) write_residual(writing, residual);
   write_ground(writing);
   write_project(writing, "ensemble", {writing.shares, writing.statistics, writing.errors});
   return writing.files;
 }
+
+RasterStyle residual_style() { return difference_style({1, 2, 3}, "\u03c3"); }
 
 RasterStyle spread_style(const SpreadMap& map) {
   return class_style(thickness_limits({}, map.raster.values), "m", Ramp::sea);
@@ -295,19 +338,12 @@ std::vector<fs::path> write_spread_maps(const fs::path& folder, const Ensemble& 
                                         const BudgetTable& table) {
   Writing writing{folder, ensemble, options};
   ProjectGroup group{"How sure", {}};
-  for (const SpreadMap& map : table.spreads) {
-    const std::string title = std::string("spread of the deposit thickness over ") + map.over;
-    Facts facts = ensemble_facts(ensemble);
-    facts.insert(facts.end(), {{"QUANTITY", title},
-                               {"MEANING",
-                                "largest less smallest thickness at the end, over the recipe itself and "
-                                "the members of its error budget"},
-                               {"NODATA_MEANING", "outside the computed domain"}});
-    const fs::path file = folder / (std::string(map.name) + ".tif");
-    write_cog(file, map.raster, raster_tags(title, "m", std::move(facts)));
-    writing.files.insert(writing.files.end(), {file, write_qgis_style(file, spread_style(map))});
-    group.layers.push_back({"S" + title.substr(1) + " [m]", file.filename().string(), false, spread_style(map)});
-  }
+  for (const SpreadMap& map : table.spreads)
+    write_other(
+        writing, group, map.raster,
+        {map.name, std::string("spread of the deposit thickness over ") + map.over, "m",
+         "largest less smallest thickness at the end, over the recipe itself and the members of its error budget",
+         "outside the computed domain", spread_style(map)});
   write_ground(writing);
   write_project(writing, "budget", {group});
   return writing.files;

@@ -31,6 +31,8 @@ struct EnsemblePageInput {
   const std::vector<std::pair<std::string, Sensitivity>>& sensitivity;
   std::vector<StageText> stages;
   const BudgetTable* budget = nullptr;  ///< of a budget; null: it is none
+  std::vector<double> residual = {};    ///< in sigma, of draws of a calibration (residual.hpp); else empty
+  Json calibration = {};                ///< calibration.json of the draws, without runs; else null
 };
 
 /// What a page holds at most; it stays below some ten megabytes and says what it leaves out.
@@ -88,11 +90,14 @@ Dependencies ensemble_depends(const StageContext& context);
 
 /// Writes FOLDER/NAME.tif (cloud-optimised) and NAME.qml of every map, the ground with its hillshade, outlines.gpkg (of
 /// probabilities at 5, 50 and 95 %, and of the release) and SCENE.qgs. Returns the files. Throws DataError.
+/// `residual`: the map of that name; empty: none.
 std::vector<std::filesystem::path> write_probability_maps(const std::filesystem::path& folder, const Ensemble& ensemble,
-                                                          const Options& options);
+                                                          const Options& options, const std::vector<double>& residual);
 
 /// How a map of spread is drawn.
 RasterStyle spread_style(const SpreadMap& map);
+/// Of residuals in standard deviations: blue where the draws are thicker than the survey.
+RasterStyle residual_style();
 
 /// Writes the maps of spread of a budget, each with its style, the ground with its hillshade, outlines.gpkg (of the
 /// release) and SCENE-budget.qgs. Returns the files. Throws DataError.

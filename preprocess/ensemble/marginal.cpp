@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "common/error.hpp"
+#include "common/map/statistics.hpp"
 #include "preprocess/ensemble/csv.hpp"
 
 namespace talus::preprocess {
@@ -102,6 +103,7 @@ AnyLaw continuous(const VaryOptions& o) {
     case Distribution::beta: return beta_of(o);
     case Distribution::table: return tabulated(o);
     case Distribution::uniform:
+    case Distribution::draws:
     case Distribution::discrete: break;
   }
   return laws.uniform(*o.low, *o.high);
@@ -124,15 +126,22 @@ Marginal::Marginal(const VaryOptions& options) {
     words_ = std::move(choices.words);
     return;
   }
+  if (options.distribution == Distribution::draws) {
+    draws_ = options.values;
+    std::ranges::sort(draws_);
+    return;
+  }
   law_ = continuous(options);
 }
 
 double Marginal::quantile(double p) const {
+  if (!draws_.empty()) return quantile_of_draws(draws_, p);
   const double value = law_->quantile(p);
   return values_.empty() ? value : values_.at(static_cast<std::size_t>(std::lround(value)));
 }
 
 double Marginal::mean() const {
+  if (!draws_.empty()) return spread_of(draws_).mean;
   if (values_.empty()) return law_->mean();
   double sum = 0;
   for (std::size_t i = 0; i < values_.size(); ++i) sum += values_[i] * law_->density(static_cast<double>(i));
@@ -140,6 +149,7 @@ double Marginal::mean() const {
 }
 
 double Marginal::deviation() const {
+  if (!draws_.empty()) return spread_of(draws_).deviation;
   if (values_.empty()) return law_->deviation();
   const double middle = mean();
   double sum = 0;

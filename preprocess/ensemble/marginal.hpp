@@ -29,8 +29,9 @@ class Marginal {
   const std::vector<std::string>& words() const { return words_; }
 
  private:
-  openturns::AnyLaw law_;
+  openturns::AnyLaw law_;       // none where there are draws
   std::vector<double> values_;  // of a discrete one, growing
+  std::vector<double> draws_;   // growing
   std::vector<std::string> words_;
 };
 

@@ -17,6 +17,8 @@ low, median, high = friction["after"]
 assert low < 20 < high and high - low < 2, friction
 assert 1.05 < thickness["after"][1] < 1.45 and thickness["left"] < 0.6, thickness
 PYTHON
+  grep -q '"calibration":{"prior":' out/synthetic-valley-calibrated/ensemble.html || fail "the page shows no posterior"
+  [[ -s out/synthetic-valley-calibrated/probability/residual_sigma.tif ]] || fail "there is no map of residuals"
 }
 
 run_test "$@"

@@ -11,6 +11,7 @@ import { columnTitle, valueWords } from "./columns.js";
 import { MapPanel, readMaps } from "./map_panel.js";
 import { mostDrawn, Outlines, styles } from "./outlines.js";
 import { Parallel } from "./parallel.js";
+import { drawPosterior } from "./posterior.js";
 import { Histogram, Scatter } from "./scatter.js";
 import { Selection } from "./selection.js";
 import { Convergence, Sensitivity } from "./sensitivity.js";
@@ -132,6 +133,7 @@ async function draw() {
   if (!data.run.sampled) dropSampled();
   if (data.run.slides) callSlides();
   drawBudget(data);
+  drawPosterior(data);
   drawSummary(data);
   drawMethod(data);
   drawParameters(data);

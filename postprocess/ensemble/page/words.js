@@ -41,6 +41,7 @@ export function drawSummary(data) {
   if (run.failed) parts.push(`${number(run.failed)} failed and are left out`);
   if (run.waiting) parts.push(`${number(run.waiting)} have not been run`);
   if (!run.sampled) inputs.splice(0, 1); // the name
+  if (run.prior) inputs.push(`friction by ${run.prior}`);
   if (run.elevation_error) inputs.push(run.elevation_error);
   const varied = inputs.length ? ` What varies: ${inputs.join(", ")}.` : "";
   document.getElementById("headline").textContent =

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 struct EnsembleProducts : test::StageRun {
   EnsembleProducts() {
     recipe_ =
-        "[scene]\nname = \"slope\"\n[ensemble]\nmembers = 40\n[[ensemble.vary]]\n"
+        "[scene]\nname = \"slope\"\n[ensemble]\nmembers = 40\nfailed_share = 0.5\n[[ensemble.vary]]\n"
         "key = \"solve.base.friction_angle_deg\"\nlow = 14\nhigh = 26\n";
   }
 
@@ -65,6 +65,25 @@ struct EnsembleProducts : test::StageRun {
     double count = 0;
     for (std::int64_t k = 0; k < members; ++k) count += test::reach_of(table_, k) > column ? 1 : 0;
     return count / static_cast<double>(members);
+  }
+
+  static constexpr double deposit_quantum = 1e-3;
+  /// Members that keep their deposits, and a survey; the surveyed thickness.
+  Raster keep_deposits(const std::string& design) {
+    write_members(design);
+    EnsembleCounts counts = empty_counts(test::ensemble_scene(), 40, {0, 40}, {});
+    counts.fingerprint = "f";
+    counts.deposit_quantum = deposit_quantum;
+    for (std::int64_t k = 0; k < 40; ++k)
+      counts.add(k, test::member_maps(counts.scene, test::reach_of(table_, k), test::depth_of(table_, k)),
+                 test::result_of(table_, k));
+    write_counts(out_ / "counts.h5", counts);
+    Raster surveyed{counts.scene.grid, std::vector<double>(counts.scene.grid.count(), 0.0)};
+    for (int row = 4; row < 9; ++row)
+      for (int column = 8; column < 20; ++column) surveyed.at(column, row) = 0.1 * column;
+    write_geotiff(scratch / "survey.tif", surveyed, {"", "m", {}});
+    recipe_ += "[postprocess]\ndeposit_threshold_m = 0.5\n[postprocess.survey]\nthickness = \"survey.tif\"\n";
+    return surveyed;
   }
 
   MemberTable table_;
@@ -169,20 +188,8 @@ TEST_F(EnsembleProducts, score_every_member_against_the_survey) {
 }
 
 TEST_F(EnsembleProducts, say_how_far_every_kept_deposit_is_from_the_surveyed_thickness) {
-  write_members();
-  EnsembleCounts counts = empty_counts(test::ensemble_scene(), 40, {0, 40}, {});
-  counts.fingerprint = "f";
-  counts.deposit_quantum = 1e-3;
-  for (std::int64_t k = 0; k < 40; ++k)
-    counts.add(k, test::member_maps(counts.scene, test::reach_of(table_, k), test::depth_of(table_, k)),
-               test::result_of(table_, k));
-  write_counts(out_ / "counts.h5", counts);
+  const Raster surveyed = keep_deposits("monte-carlo");
   const EnsembleScene scene = test::ensemble_scene();
-  Raster surveyed{scene.grid, std::vector<double>(scene.grid.count(), 0.0)};
-  for (int row = 4; row < 9; ++row)
-    for (int column = 8; column < 20; ++column) surveyed.at(column, row) = 0.1 * column;
-  write_geotiff(scratch / "survey.tif", surveyed, {"", "m", {}});
-  recipe_ += "[postprocess]\ndeposit_threshold_m = 0.5\n[postprocess.survey]\nthickness = \"survey.tif\"\n";
   run_it();
   const auto lines = rows();
   ASSERT_TRUE(lines.at(0).ends_with(",deposit_csi,thickness_rmse_m,thickness_bias_m,failure,warnings")) << lines[0];
@@ -199,9 +206,30 @@ TEST_F(EnsembleProducts, say_how_far_every_kept_deposit_is_from_the_surveyed_thi
     }
     const std::size_t bias_at = line.rfind(',', line.size() - 3), rmse_at = line.rfind(',', bias_at - 1);
     const double bias = std::stod(line.substr(bias_at + 1)), rmse = std::stod(line.substr(rmse_at + 1));
-    EXPECT_NEAR(rmse, std::sqrt(squares / cells), counts.deposit_quantum) << line;
-    EXPECT_NEAR(bias, sum / cells, counts.deposit_quantum) << line;
+    EXPECT_NEAR(rmse, std::sqrt(squares / cells), deposit_quantum) << line;
+    EXPECT_NEAR(bias, sum / cells, deposit_quantum) << line;
   }
+}
+
+TEST_F(EnsembleProducts, of_a_calibration_show_what_it_leaves_unexplained) {
+  const Raster surveyed = keep_deposits("posterior");
+  run_it();
+  const auto likelihood = Json::parse(test::text_of(out_ / "likelihood.json"));
+  double discrepancy = 0;
+  for (const auto& entry : likelihood["compared"][0]["discrepancy"])
+    discrepancy += entry[0].get<double>() * entry[2].get<double>();
+  const Raster residual = read_raster(out_ / "probability/residual_sigma.tif"),
+               mean = read_raster(out_ / "probability/deposit_thickness_mean.tif"),
+               spread = read_raster(out_ / "probability/deposit_thickness_deviation.tif");
+  int cells = 0;
+  for (std::size_t c = 0; c < residual.values.size(); ++c) {
+    if (!(std::max(surveyed.values[c], mean.values[c]) > 0.5)) continue;
+    ++cells;
+    EXPECT_NEAR(residual.values[c], (surveyed.values[c] - mean.values[c]) / std::hypot(discrepancy, spread.values[c]),
+                1e-6);
+  }
+  EXPECT_GT(cells, 60);
+  EXPECT_TRUE(test::holds(test::text_of(out_ / "ensemble.html"), {"Residual after the survey"}));
 }
 
 TEST_F(EnsembleProducts, are_in_one_netcdf_file_with_thresholds_as_coordinates_and_members_as_a_group) {
