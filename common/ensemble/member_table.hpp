@@ -100,8 +100,9 @@ struct MemberTable {
 };
 
 /// Names of facts of a table of members.
-inline constexpr const char* recipe_of_members = "recipe.ensemble";           ///< mark of the table that drew them
-inline constexpr const char* recipe_of_slides = "recipe.slides";              ///< and of the one that lists slides
+inline constexpr const char* recipe_of_members = "recipe.ensemble";  ///< mark of the table that drew them
+inline constexpr const char* recipe_of_slides = "recipe.slides";     ///< and of the one that lists slides
+inline constexpr const char* prior_of_members = "prior";  ///< where their distributions come from, where one is given
 inline constexpr const char* elevation_error_of_members = "elevation_error";  ///< in words, where there is one
 inline constexpr const char* base_domain_id = "domain.id";                    ///< of the domain that they differ from
 

@@ -30,7 +30,8 @@ Parameters parameters_of(Distribution distribution) {
     case Distribution::triangular: return {.bounds_needed = true, .mode = true};
     case Distribution::beta: return {.bounds_needed = true, .moments = true};
     case Distribution::discrete:
-    case Distribution::table: return {.bounds_taken = false};
+    case Distribution::table:
+    case Distribution::draws: return {.bounds_taken = false};
   }
   return {};
 }
@@ -171,6 +172,11 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
   v.path("table", table,
          "design = \"table\": a CSV file, a column for each key that varies, a row for each member; \"posterior\": the "
          "draws.csv of talus calibrate");
+  v.path(
+      "prior", prior,
+      "the posterior.csv of talus calibrate for another event, whose keys of [solve] vary here; or \"rock-avalanche\", "
+      "\"debris-flow\", \"snow-avalanche\": friction that is usual for them. [[ensemble.vary]] of the same key "
+      "goes before");
   v.number("failed_share", failed_share, recipe::fraction, "share of the members that may fail");
   v.names("keep", keep, {},
           "members whose whole run is kept, counted from 0: \"17\"; \"all\"; \"deposits\": of each the deposit's "
@@ -188,9 +194,9 @@ void EnsembleOptions::describe(recipe::Visitor& v) {
 void EnsembleOptions::check(std::vector<Fault>& faults) const {
   if (is_budget()) return budget.check(faults);
   if (!on() || design == Design::slides) return;
-  if (vary.empty() && !elevation_error.acts() && design != Design::table)
+  if (vary.empty() && prior.empty() && !elevation_error.acts() && design != Design::table)
     faults.push_back({"[ensemble] with nothing that varies", "all members would be the same run",
-                      "Add [[ensemble.vary]], or [ensemble.elevation_error]"});
+                      "Add [[ensemble.vary]], prior, or [ensemble.elevation_error]"});
   if ((design == Design::table || design == Design::posterior) == table.empty())
     faults.push_back({"[ensemble] table and design do not go together",
                       "design = \"table\" and \"posterior\" are given by a file, and no other is",
@@ -239,7 +245,7 @@ EnsembleOptions ensemble_of(const recipe::Recipe& recipe) {
   }
   EnsembleOptions ensemble = recipe.read<EnsembleOfSlides>("ensemble");
   if (ensemble.design != Design::slides || ensemble.members > 0 || !ensemble.table.empty() || !ensemble.vary.empty() ||
-      !ensemble.correlation.empty() || ensemble.elevation_error.acts())
+      !ensemble.prior.empty() || !ensemble.correlation.empty() || ensemble.elevation_error.acts())
     throw RecipeError({"[slides] beside [ensemble] with members of its own",
                        "either each slide is a member, or each draw of one slide",
                        "Leave [slides] out, or give failed_share, keep and thresholds alone in [ensemble]"});

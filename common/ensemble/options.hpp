@@ -100,7 +100,8 @@ std::string design_name(Design design);
 /// The largest number of members.
 inline constexpr int most_members = 1'000'000;
 
-enum class Distribution { uniform, normal, lognormal, triangular, beta, discrete, table };
+/// draws: no recipe names it; `prior` stands for it.
+enum class Distribution { uniform, normal, lognormal, triangular, beta, discrete, table, draws };
 
 /// A key of the recipe that varies from member to member.
 struct VaryOptions {
@@ -109,7 +110,7 @@ struct VaryOptions {
   std::optional<double> low, high;        ///< bounds; of a normal or lognormal distribution where it is cut off
   std::optional<double> mean, deviation;  ///< normal, lognormal, beta: of the value itself
   std::optional<double> mode;             ///< triangular
-  std::vector<double> values;             ///< discrete: numbers
+  std::vector<double> values;             ///< discrete: numbers; draws: a sample of the distribution
   std::vector<std::string> words;         ///< discrete: words, such as the names of laws
   std::vector<double> weights;            ///< of values or words; empty: alike
   std::filesystem::path table;            ///< a file of comma-separated values: value, probability density
@@ -152,6 +153,8 @@ struct EnsembleOptions {
   int levels = 5;  ///< of full_grid and one_at_a_time
   int seed = 1;
   std::filesystem::path table;  ///< of design = "table" and "posterior"
+  std::filesystem::path prior;  ///< a posterior.csv of another event, or a class of events; empty: none
+  std::string prior_source;     ///< in words; no key of the recipe
   double failed_share = 0.05;   ///< of the members that may fail before the ensemble does; of a budget all but one may
   std::vector<std::string>
       keep;  ///< members whose whole run is kept: "12", "all"; "deposits": of each the deposit's map

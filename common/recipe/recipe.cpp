@@ -228,11 +228,11 @@ std::unique_ptr<Visitor> Recipe::make_reader(std::string_view stage, std::vector
   return make_table_reader(parsed_->root, parsed_->shown, folder, stage, faults);
 }
 
-std::optional<std::string> Recipe::canonical(std::string_view table) const {
-  const toml::table* found = parsed_->root[table].as_table();
-  if (found == nullptr) return std::nullopt;
+std::optional<std::string> Recipe::canonical(std::string_view place) const {
+  const auto found = toml::at_path(parsed_->root, place);
+  if (!found) return std::nullopt;
   std::string text;
-  append(*found, text);
+  append(*found.node(), text);
   return text;
 }
 

@@ -172,8 +172,8 @@ class Recipe {
   std::string scene_name() const;  ///< [scene] name, or the file's stem
   std::string title() const;       ///< [scene] title, or the name
 
-  /// A table as the recipe writes it (defaults not filled in, variables in paths not replaced), in an order and a
-  /// spelling that do not depend on the file's: recipes of the same text say the same. None: no such table.
+  /// A table, or a value ("solve.base.law"), as the recipe writes it (defaults not filled in, variables not replaced),
+  /// in an order and a spelling that do not depend on the file's: recipes of the same text say the same. None: no such.
   std::optional<std::string> canonical(std::string_view table) const;
 
   /// Read table `stage` into options. All faults at once: unknown keys (with "did you mean"), wrong types, values out

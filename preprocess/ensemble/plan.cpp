@@ -10,6 +10,7 @@
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
+#include "preprocess/ensemble/prior.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -150,7 +151,7 @@ std::vector<std::optional<Options>> options_of_members(const recipe::Recipe& rec
 }
 
 std::optional<EnsemblePlan> plan_ensemble(const recipe::Recipe& recipe, const Options& base) {
-  EnsembleOptions options = ensemble_of(recipe);
+  const EnsembleOptions options = with_prior(ensemble_of(recipe), recipe);
   if (!options.on()) return std::nullopt;
   EnsemblePlan plan{options, draw_members(options), {}};
   check_keys(plan.table, base);
@@ -195,6 +196,7 @@ std::vector<std::filesystem::path> inputs_of(const EnsembleOptions& options) {
   std::vector<std::filesystem::path> inputs;
   if (!options.on() || options.is_budget()) return inputs;
   if (!options.table.empty()) inputs.push_back(options.table);
+  if (options.prior.has_extension()) inputs.push_back(options.prior);
   for (const VaryOptions& one : options.vary)
     if (!one.table.empty()) inputs.push_back(one.table);
   return inputs;

@@ -308,6 +308,7 @@ std::int64_t write_ensemble(StageContext& context, EnsemblePlan& plan, const Ens
                       {recipe_of_slides, recipe_mark(context.recipe, "slides")},
                       {used_by_members, ensemble_mark(context.recipe)},
                       {base_domain_id, of_base}};
+  if (!plan.options.prior_source.empty()) table.provenance.emplace_back(prior_of_members, plan.options.prior_source);
   if (plan.errors) table.provenance.emplace_back(elevation_error_of_members, plan.errors->words());
   write_member_table(paths.members(), table);
   context.results.push_back(paths.members());

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/ensemble/member_table.hpp"
 #include "tests/talus/bowl.hpp"
 
 namespace talus::command {
@@ -54,6 +55,22 @@ TEST_F(CalibrateInProcess, finds_the_friction_of_the_survey_with_its_interval) {
       << fitted;
 }
 
+TEST_F(CalibrateInProcess, gives_its_friction_to_the_next_slide) {
+  test::Listener listener;
+  ASSERT_EQ(calibrate(listener), 0) << listener.text;
+  EXPECT_TRUE(test::holds(listener.text, {"no discrepancy is found"})) << "the survey is a run of the same model";
+  const auto key = summary()["keys"][0];
+  scratch.write("recipe.toml", recipe(24) + "[ensemble]\nmembers = 8\nprior = \"out/posterior.csv\"\n");
+  const BindContext bind(listener.own);
+  const test::NoStdout quiet;
+  ASSERT_EQ(run_scene(request("next")), 0) << listener.text;
+  const MemberTable members = read_member_table(EnsemblePaths{scratch / "next"}.members());
+  ASSERT_EQ(members.columns.size(), 1u);
+  for (const double angle : members.columns[0].values)
+    EXPECT_NEAR(angle, key["after"][1].get<double>(), key["after"][2].get<double>() - key["after"][0].get<double>());
+  EXPECT_TRUE(test::holds(test::text_of(scratch / "next/ensemble.html"), {"24 draws of", "posterior.csv"}));
+}
+
 TEST_F(CalibrateInProcess, goes_on_where_it_was_killed_with_the_same_bits) {
   test::Listener whole, killed, second;
   ASSERT_EQ(calibrate(whole, "whole"), 0) << whole.text;
@@ -76,8 +93,8 @@ TEST_F(CalibrateInProcess, says_which_key_the_survey_does_not_tell) {
   write(idle_key);
   test::Listener listener;
   ASSERT_EQ(calibrate(listener), 0) << listener.text;
-  EXPECT_TRUE(test::holds(listener.text, {"The survey does not tell youngs_modulus_Pa"})) << listener.text;
-  EXPECT_FALSE(test::holds(listener.text, {"does not tell friction_angle_deg"})) << listener.text;
+  EXPECT_TRUE(test::holds(listener.text, {"The survey does not determine youngs_modulus_Pa"})) << listener.text;
+  EXPECT_FALSE(test::holds(listener.text, {"does not determine friction_angle_deg"})) << listener.text;
 }
 
 TEST_F(CalibrateInProcess, says_that_the_truth_may_lie_beyond_the_prior) {
