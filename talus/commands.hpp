@@ -103,6 +103,7 @@ struct NewScene {
   std::filesystem::path ignore = {};   ///< polygons whose change is not looked at
   // How much is released within an outline; none: by its area.
   std::optional<double> thickness = {};  ///< everywhere, vertical [m]
+  std::filesystem::path prior = {};      ///< of the friction, as [ensemble] takes it
   std::optional<double> volume = {};     ///< above a curved sliding surface [m3]
   std::optional<double> depth = {};      ///< of a curved sliding surface, at most [m]
 };

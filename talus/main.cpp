@@ -139,6 +139,10 @@ void declare_new(CLI::App& app, NewScene& scene, Asked& asked) {
   command
       ->add_option("--depth", scene.depth, "Of such a surface, at most [m] (default: volume from the outline's area)")
       ->type_name("M");
+  command
+      ->add_option("--prior", scene.prior,
+                   "Friction of what fails: posterior.csv of another event, or its class (rock-avalanche)")
+      ->type_name("FILE");
   command->add_flag("--overwrite", scene.overwrite, "Write over a recipe that is there already");
   command->callback([&] { asked.command = [&] { return new_scene(scene); }; });
 }

@@ -247,8 +247,12 @@ std::string lognormal(const std::string& key, double median, double deviation, c
 std::string doubts(const NewScene& scene, const Proposal& p) {
   const double friction = std::log(reach_factor) / two_sided_95, volume = std::log(volume_factor) / two_sided_95;
   std::string text = "\n# Maps of probability: talus run RECIPE --set ensemble.members=100\n[ensemble]\nmembers = 0\n";
-  text += lognormal("solve.base.friction_coefficient", coefficient_of(p), friction,
-                    fmt::format("19 of 20 within a factor of {:g}, as H/L scatters", reach_factor));
+  if (!scene.prior.empty())
+    text += fmt::format("prior = {}\n", scene.prior.has_extension() ? named(scene.prior, scene.recipe)
+                                                                    : recipe::toml_text(scene.prior.string()));
+  else
+    text += lognormal("solve.base.friction_coefficient", coefficient_of(p), friction,
+                      fmt::format("19 of 20 within a factor of {:g}, as H/L scatters", reach_factor));
   if (!scene.thickness && !scene.volume && !scene.depth)
     text += lognormal(thickness_factor_key, 1, volume,
                       fmt::format("a volume from an area: 19 of 20 within a factor of {:g}, assumed", volume_factor));

@@ -37,6 +37,7 @@ constexpr ClassNumber class_numbers[] = {
 };
 
 constexpr int class_draws = 999;
+constexpr double degree = 180 / std::numbers::pi;
 
 [[noreturn]] void refuse_prior(const std::string& what, const std::string& why, const std::string& mend) {
   throw RecipeError({"[ensemble] prior: " + what, why, mend});
@@ -60,7 +61,7 @@ VaryOptions of_class(const ClassNumber& number, const std::string& key, bool as_
   std::vector<double> values;
   for (int k = 0; k < class_draws; ++k) {
     const double value = law->quantile((k + 0.5) / class_draws);
-    values.push_back(as_angle ? std::atan(value) * 180 / std::numbers::pi : value);
+    values.push_back(as_angle ? std::atan(value) * degree : value);
   }
   return drawn(key, std::move(values));
 }
@@ -82,6 +83,17 @@ void add_class(EnsembleOptions& options, const std::string& event, const recipe:
   options.prior_source = fmt::format("usual friction of a {} with law = {}", event, law);
 }
 
+/// A column of draws in the form of friction, angle or coefficient, that the recipe gives.
+MemberColumn in_recipes_form(MemberColumn column, const EnsembleOptions& options, const recipe::Recipe& recipe) {
+  const std::string table = column.key.substr(0, column.key.rfind('.') + 1), form = column.key.substr(table.size());
+  if (form != friction && form != angle) return column;
+  const std::string other = table + std::string(form == angle ? friction : angle);
+  if (!recipe.canonical(other) && !varies(options, other)) return column;
+  for (double& value : column.values) value = form == angle ? std::tan(value / degree) : std::atan(value) * degree;
+  column.key = other;
+  return column;
+}
+
 /// A column of draws as a distribution; of words with their shares.
 VaryOptions of_column(const MemberColumn& column) {
   if (column.words.empty()) return drawn(column.key, column.values);
@@ -94,19 +106,21 @@ VaryOptions of_column(const MemberColumn& column) {
   return vary;
 }
 
-void add_posterior(EnsembleOptions& options) {
+void add_posterior(EnsembleOptions& options, const recipe::Recipe& recipe) {
   MemberTable table;
   take_listed(table, options.prior);
-  std::vector<const MemberColumn*> taken;
-  for (const MemberColumn& column : table.columns)
-    if (column.key.starts_with("solve.") && !varies(options, column.key)) taken.push_back(&column);
-  for (const MemberColumn* column : taken) options.vary.push_back(of_column(*column));
+  std::vector<MemberColumn> taken;
+  for (const MemberColumn& listed : table.columns) {
+    MemberColumn column = in_recipes_form(listed, options, recipe);
+    if (column.key.starts_with("solve.") && !varies(options, column.key)) taken.push_back(std::move(column));
+  }
+  for (const MemberColumn& column : taken) options.vary.push_back(of_column(column));
   for (std::size_t a = 0; a < taken.size(); ++a)
     for (std::size_t b = a + 1; b < taken.size(); ++b)
-      if (taken[a]->words.empty() && taken[b]->words.empty())
+      if (taken[a].words.empty() && taken[b].words.empty())
         options.correlation.push_back(
-            {{taken[a]->key, taken[b]->key},
-             openturns::library().rank_correlations({taken[a]->values}, taken[b]->values).front()});
+            {{taken[a].key, taken[b].key},
+             openturns::library().rank_correlations({taken[a].values}, taken[b].values).front()});
   if (taken.empty())
     refuse_prior(options.prior.string() + " gives no key of [solve] that is not in [[ensemble.vary]]",
                  "what was released belongs to its own event", "Leave it out, or name a posterior.csv with friction");
@@ -121,7 +135,7 @@ EnsembleOptions with_prior(EnsembleOptions options, const recipe::Recipe& recipe
   if (std::ranges::any_of(class_numbers, [&](const ClassNumber& one) { return one.event == name; }))
     add_class(options, name, recipe);
   else
-    add_posterior(options);
+    add_posterior(options, recipe);
   return options;
 }
 

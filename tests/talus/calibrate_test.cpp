@@ -40,7 +40,7 @@ struct CalibrateInProcess : test::SurveyedBowl {
 constexpr const char* idle_key =
     "[[ensemble.vary]]\nkey = \"solve.material.youngs_modulus_Pa\"\nlow = 1.0e6\nhigh = 1.000001e6\n";
 
-TEST_F(CalibrateInProcess, finds_the_friction_of_the_survey_with_its_interval) {
+TEST_F(CalibrateInProcess, finds_the_friction_of_the_survey_and_gives_it_to_the_next_slide) {
   test::Listener listener;
   ASSERT_EQ(calibrate(listener), 0) << listener.text;
   const auto key = summary()["keys"][0];
@@ -53,13 +53,7 @@ TEST_F(CalibrateInProcess, finds_the_friction_of_the_survey_with_its_interval) {
   const std::string fitted = test::text_of(scratch / "fitted.toml");
   EXPECT_TRUE(test::holds(fitted, {"# Fitted by talus calibrate", "members = 0", "friction_is = \"fitted\""}))
       << fitted;
-}
-
-TEST_F(CalibrateInProcess, gives_its_friction_to_the_next_slide) {
-  test::Listener listener;
-  ASSERT_EQ(calibrate(listener), 0) << listener.text;
   EXPECT_TRUE(test::holds(listener.text, {"no discrepancy is found"})) << "the survey is a run of the same model";
-  const auto key = summary()["keys"][0];
   scratch.write("recipe.toml", recipe(24) + "[ensemble]\nmembers = 8\nprior = \"out/posterior.csv\"\n");
   const BindContext bind(listener.own);
   const test::NoStdout quiet;
@@ -73,19 +67,20 @@ TEST_F(CalibrateInProcess, gives_its_friction_to_the_next_slide) {
 
 TEST_F(CalibrateInProcess, goes_on_where_it_was_killed_with_the_same_bits) {
   test::Listener whole, killed, second;
-  ASSERT_EQ(calibrate(whole, "whole"), 0) << whole.text;
+  const std::vector<std::string> few{"ensemble.members=12"};
+  ASSERT_EQ(calibrate(whole, "whole", few), 0) << whole.text;
   int batches = 0;
   killed.heard = [&](const std::string& line) {
     if (test::holds(line, {"largest log-likelihood"}) && ++batches == 3) killed.own.interrupt();
   };
   try {
-    EXPECT_EQ(calibrate(killed, "killed"), 130) << killed.text;
+    EXPECT_EQ(calibrate(killed, "killed", few), 130) << killed.text;
   } catch (const Interrupted&) {
   }
   EXPECT_FALSE(fs::exists(scratch / "killed/posterior.csv"));
-  ASSERT_EQ(calibrate(second, "killed"), 0) << second.text;
-  EXPECT_TRUE(test::holds(second.text, {"72 runs (known)"})) << second.text;
-  EXPECT_FALSE(test::holds(second.text, {"96 runs (known)"})) << second.text;
+  ASSERT_EQ(calibrate(second, "killed", few), 0) << second.text;
+  EXPECT_TRUE(test::holds(second.text, {"36 runs (known)"})) << second.text;
+  EXPECT_FALSE(test::holds(second.text, {"48 runs (known)"})) << second.text;
   EXPECT_EQ(test::text_of(scratch / "killed/posterior.csv"), test::text_of(scratch / "whole/posterior.csv"));
 }
 
@@ -107,7 +102,7 @@ TEST_F(CalibrateInProcess, says_that_the_truth_may_lie_beyond_the_prior) {
 TEST_F(CalibrateInProcess, corrects_larger_cells_by_the_recipes_own) {
   write({}, 18, 20);
   test::Listener listener;
-  ASSERT_EQ(calibrate(listener, "out", {"calibrate.cell_factor=2"}), 0) << listener.text;
+  ASSERT_EQ(calibrate(listener, "out", {"calibrate.cell_factor=2", "ensemble.members=12"}), 0) << listener.text;
   EXPECT_NEAR(summary()["keys"][0]["after"][1].get<double>(), truth, 0.5) << listener.text;
   EXPECT_TRUE(test::holds(listener.text, {"own cells, exponent 1"})) << listener.text;
 }

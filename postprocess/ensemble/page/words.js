@@ -41,9 +41,9 @@ export function drawSummary(data) {
   if (run.failed) parts.push(`${number(run.failed)} failed and are left out`);
   if (run.waiting) parts.push(`${number(run.waiting)} have not been run`);
   if (!run.sampled) inputs.splice(0, 1); // the name
-  if (run.prior) inputs.push(`friction by ${run.prior}`);
   if (run.elevation_error) inputs.push(run.elevation_error);
-  const varied = inputs.length ? ` What varies: ${inputs.join(", ")}.` : "";
+  const prior = run.prior ? ` Source of the friction: ${run.prior}.` : "";
+  const varied = (inputs.length ? ` What varies: ${inputs.join(", ")}.` : "") + prior;
   document.getElementById("headline").textContent =
     run.slides
       ? `${parts.join(", ")}, each in a domain of its own over one elevation model.${varied}`

@@ -76,6 +76,14 @@ TEST_F(Prior, of_another_event_takes_its_friction_as_drawn_and_leaves_its_releas
   EXPECT_NEAR(Marginal(o.vary[0]).mean(), 16.95, 1e-9);
 }
 
+TEST_F(Prior, of_another_event_comes_in_the_form_of_friction_that_the_recipe_gives) {
+  scratch_.write("there.csv", "solve.base.friction_angle_deg\n20\n22\n24\n");
+  const EnsembleOptions o = expanded("there.csv", "law = \"coulomb\"\nfriction_coefficient = 0.3\n");
+  ASSERT_EQ(o.vary.size(), 1u);
+  EXPECT_EQ(o.vary[0].key, "solve.base.friction_coefficient");
+  EXPECT_NEAR(Marginal(o.vary[0]).quantile(0.5), 0.404026, 1e-6) << "tan 22 degrees";
+}
+
 TEST_F(Prior, of_another_event_refuses_a_file_without_friction) {
   scratch_.write("there.csv", "preprocess.thickness_factor\n1\n2\n");
   EXPECT_TRUE(test::holds(refusal("there.csv", "law = \"coulomb\"\n"), {"gives no key of [solve]"}));
