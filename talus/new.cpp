@@ -314,9 +314,13 @@ NewScene settled(NewScene scene) {
     std::swap(scene.outline, scene.after);
   }
   const int amounts = scene.thickness.has_value() + scene.volume.has_value() + scene.depth.has_value();
-  if (amounts > 1 || (amounts > 0 && !scene.after.empty()))
-    throw RecipeError(Fault{"--thickness, --volume, --depth: more than one, or beside two elevation models",
-                            "each says by itself how much is released, as two models do", "Leave the others out"});
+  if (amounts > 1)
+    throw RecipeError(Fault{"--thickness, --volume, --depth: more than one", "each says by itself how much is released",
+                            "Leave the others out"});
+  if ((amounts > 0 || !scene.prior.empty()) && !scene.after.empty())
+    throw RecipeError(Fault{fmt::format("{}: it holds no polygons, or is not there", scene.after.string()),
+                            "--thickness, --volume, --depth and --prior are for what may fail within an outline",
+                            "Name its file, or leave the option out"});
   return scene;
 }
 

@@ -354,7 +354,7 @@ test_new_writes_a_recipe_of_a_slope_that_may_fail() {
   expect_exit 2 "${new[@]}" --at 1,2
   expect_words '--at, --outline and --ignore say which change between two models is the slide'
   expect_exit 2 "$bin/talus" new "$samples/before_dem.tif" "$samples/after_dem.tif" --recipe two.toml --depth 3
-  expect_words 'beside two elevation models'
+  expect_words 'it holds no polygons, or is not there'
 }
 
 test_new_refuses_politely_what_is_no_slide() {
