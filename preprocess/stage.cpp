@@ -19,6 +19,7 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "preprocess/ensemble/ensemble.hpp"
+#include "preprocess/ensemble/prior.hpp"
 #include "preprocess/obstacle/obstacles.hpp"
 #include "preprocess/output/provenance.hpp"
 #include "preprocess/output/write_survey.hpp"
@@ -228,5 +229,7 @@ Stage stage() {
   };
   return s;
 }
+
+EnsembleOptions ensemble_with_prior(const recipe::Recipe& recipe) { return with_prior(ensemble_of(recipe), recipe); }
 
 }  // namespace talus::preprocess

@@ -18,7 +18,7 @@
 #include "common/error.hpp"
 #include "common/recipe/recipe.hpp"
 #include "common/stage/files.hpp"
-#include "preprocess/ensemble/prior.hpp"
+#include "preprocess/stage.hpp"
 #include "talus/commands.hpp"
 #include "talus/fitted_recipe.hpp"
 #include "talus/posterior.hpp"
@@ -148,7 +148,7 @@ class Model {
 
 /// Refuses a recipe that gives no distributions, or members of another kind.
 EnsembleOptions priors_of(const recipe::Recipe& recipe) {
-  EnsembleOptions options = preprocess::with_prior(ensemble_of(recipe), recipe);
+  EnsembleOptions options = preprocess::ensemble_with_prior(recipe);
   const auto refuse = [](const std::string& what, const std::string& why, const std::string& mend) {
     throw RecipeError({"talus calibrate: " + what, why, mend});
   };

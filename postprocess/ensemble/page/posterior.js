@@ -29,13 +29,23 @@ function drawnKeys(data) {
     if (!column || column.words.length) return [];
     const after = column.values.filter((_, member) => data.members.states[member] === 1);
     const all = [...prior[row.key], ...after].filter(Number.isFinite);
-    return [{ ...row, name: shortName(row.key, names), draws: [prior[row.key], after],
-      low: Math.min(...all), high: Math.max(...all) }];
+    return [
+      {
+        ...row,
+        name: shortName(row.key, names),
+        draws: [prior[row.key], after],
+        low: Math.min(...all),
+        high: Math.max(...all),
+      },
+    ];
   });
 }
 
 function table({ summary }) {
-  const three = (list) => list.map((value) => h("td", { class: "number" }, number(value, digits({ low: list[0], high: list[2] }))));
+  const three = (list) => {
+    const decimals = digits({ low: list[0], high: list[2] });
+    return list.map((value) => h("td", { class: "number" }, number(value, decimals)));
+  };
   const head = h("tr", {}, h("th", {}, "Key"), h("th", { colspan: 3, class: "number" }, "Before: 5, 50, 95 %"),
     h("th", { colspan: 3, class: "number" }, "After: 5, 50, 95 %"), h("th", { class: "number" }, "Deviation left"));
   const rows = summary.keys.map((row) =>
@@ -50,13 +60,17 @@ const place = (key, value) => ((value - key.low) / (key.high - key.low || 1)) * 
 function histogram(key) {
   const shares = key.draws.map((draws) => {
     const counts = new Array(bins).fill(0);
-    for (const value of draws) counts[Math.min(bins - 1, Math.floor((place(key, value) / side) * bins))] += 1 / draws.length;
+    for (const value of draws)
+      counts[Math.min(bins - 1, Math.floor((place(key, value) / side) * bins))] += 1 / draws.length;
     return counts;
   });
   const most = Math.max(...shares.flat()), width = side / bins, height = (share) => (share / most) * side * 0.95;
   const bars = shares[1].map((share, i) =>
     svg("rect", { x: i * width, y: side - height(share), width, height: height(share), fill: colours.blue }));
-  const steps = shares[0].map((share, i) => `${i * width},${side - height(share)} ${(i + 1) * width},${side - height(share)}`);
+  const steps = shares[0].map((share, i) => {
+    const y = side - height(share);
+    return `${i * width},${y} ${(i + 1) * width},${y}`;
+  });
   return [...bars, svg("polyline", { points: steps.join(" "), fill: "none", stroke: before, "stroke-width": 1.5 })];
 }
 
@@ -68,7 +82,8 @@ function cloud(across, up) {
 }
 
 function label(words, x, y, anchor, turned) {
-  return svg("text", { x, y, "text-anchor": anchor, "font-size": 11, ...(turned ? { transform: `rotate(-90 ${x} ${y})` } : {}) }, words);
+  const turn = turned ? { transform: `rotate(-90 ${x} ${y})` } : {};
+  return svg("text", { x, y, "text-anchor": anchor, "font-size": 11, ...turn }, words);
 }
 
 function cornerPlot(keys) {
@@ -77,19 +92,23 @@ function cornerPlot(keys) {
     keys.slice(0, row + 1).forEach((across, column) => {
       const x = left + column * (side + gap), y = row * (side + gap) + gap;
       const frame = svg("rect", { width: side, height: side, fill: "none", stroke: "#c9ced4" });
-      parts.push(svg("g", { transform: `translate(${x} ${y})` }, frame, ...(row === column ? histogram(up) : cloud(across, up))));
+      const inside = row === column ? histogram(up) : cloud(across, up);
+      parts.push(svg("g", { transform: `translate(${x} ${y})` }, frame, ...inside));
       if (row + 1 === keys.length) {
         parts.push(label(number(across.low, digits(across)), x, y + side + 14, "start"),
           label(number(across.high, digits(across)), x + side, y + side + 14, "end"),
           label(across.name, x + side / 2, y + side + 32, "middle"));
       }
       if (column === 0 && row > 0) {
-        parts.push(label(number(up.low, digits(up)), x - 4, y + side, "end"), label(number(up.high, digits(up)), x - 4, y + 10, "end"),
+        parts.push(label(number(up.low, digits(up)), x - 4, y + side, "end"),
+          label(number(up.high, digits(up)), x - 4, y + 10, "end"),
           label(up.name, x - 46, y + side / 2, "middle", true));
       }
     }));
-  return svg("svg", { viewBox: `0 0 ${left + size} ${size + below}`, width: left + size, height: size + below, role: "img",
-    "aria-label": "Draws of each key and of each pair of keys", style: "max-width: 100%; height: auto" }, ...parts);
+  const width = left + size, height = size + below;
+  const plot = svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img" }, ...parts);
+  plot.setAttribute("aria-label", "Draws of each key and of each pair of keys");
+  return plot;
 }
 
 export function drawPosterior(data) {
