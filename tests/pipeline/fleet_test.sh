@@ -27,22 +27,6 @@ start_cluster() {
   for worker in 1 2 3 4; do start worker --nthreads 1 --no-nanny; done
 }
 
-ensemble_of_64() {
-  scene
-  sed -i 's/^end_time_s.*/end_time_s = 20.0/' recipe.toml
-  cat >>recipe.toml <<'TOML'
-
-[ensemble]
-members = 64
-
-[[ensemble.vary]]
-key = "solve.base.friction_angle_deg"
-low = 10.0
-high = 20.0
-TOML
-  expect_exit 0 preprocess
-}
-
 fleet() { /usr/bin/python3 "$TALUS_SOURCE/pipelines/ensemble.py" "$@"; }
 
 # kill_worker WHOLE: kill -9 a worker that has members of a part finished, with all that it started where WHOLE is yes.
@@ -68,7 +52,9 @@ kill_worker() {
 }
 
 test_parts_of_killed_workers_are_done_again() {
-  ensemble_of_64
+  scene_of_members 64
+  sed -i 's/^end_time_s.*/end_time_s = 20.0/' recipe.toml
+  expect_exit 0 preprocess
   expect_exit 0 solve
   expect_exit 0 postprocess
   mkdir whole

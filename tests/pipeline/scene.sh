@@ -93,6 +93,21 @@ need_mounts() {
     skip "this machine does not let the test mount a small disk"
 }
 
+# scene_of_members COUNT: the scene as an ensemble of so many members that differ in the friction of the bed.
+scene_of_members() {
+  scene
+  cat >>recipe.toml <<TOML
+
+[ensemble]
+members = $1
+
+[[ensemble.vary]]
+key = "solve.base.friction_angle_deg"
+low = 10.0
+high = 20.0
+TOML
+}
+
 # same_counts A B...: the counts of A are those of the other files together.
 same_counts() {
   /usr/bin/python3 - "$@" <<'PYTHON' || fail "the counts of $1 are not those of ${*:2}"

@@ -75,25 +75,11 @@ CONF
   skip "Slurm did not start here: $(tail -n 2 "$slurm/slurmctld.out" "$slurm/slurmd.out" | tr '\n' ' ')"
 }
 
-ensemble_of_ten() {
-  scene
-  cat >>recipe.toml <<'TOML'
-
-[ensemble]
-members = 10
-
-[[ensemble.vary]]
-key = "solve.base.friction_angle_deg"
-low = 10.0
-high = 20.0
-TOML
-  expect_exit 0 preprocess
-}
-
 # Parts of three jobs are those of ten members: 3, 3 and 4.
 test_an_array_of_jobs_computes_the_parts() {
   start_slurm
-  ensemble_of_ten
+  scene_of_members 10
+  expect_exit 0 preprocess
   export TALUS_BIN=$bin
   expect_exit 0 timeout 240 sbatch --wait --array=0-2 --cpus-per-task=1 --output=job.%a.log \
     "$TALUS_SOURCE/pipelines/ensemble.sbatch" recipe.toml out
@@ -108,7 +94,8 @@ test_an_array_of_jobs_computes_the_parts() {
 
 # Without Slurm, PARTS and PART say which part it is. A process that is sent a part which another one computes waits.
 test_the_script_runs_without_slurm() {
-  ensemble_of_ten
+  scene_of_members 10
+  expect_exit 0 preprocess
   local part script=$TALUS_SOURCE/pipelines/ensemble.sbatch
   export TALUS_BIN=$bin PARTS=3
   for part in 0 1 2; do expect_exit 0 env PART=$part "$script" recipe.toml out --on cpu; done
