@@ -3,6 +3,7 @@
 // Draws of a calibration beside those of their distributions before it: a table, conclusions and a corner plot.
 import { colours } from "../../report/page/charts.js";
 import { h, number } from "../../report/page/format.js";
+import { columnTitle } from "./columns.js";
 
 const before = "#9aa3ad", bins = 20, side = 150, gap = 8, left = 64, below = 46;
 
@@ -13,17 +14,11 @@ function svg(name, attributes, ...children) {
   return element;
 }
 
-/** The last part of a key, with its table where two keys end alike. */
-function shortName(key, keys) {
-  const end = (parts) => key.split(".").slice(-parts).join(".");
-  return keys.filter((other) => other.endsWith(`.${end(1)}`)).length > 1 ? end(2) : end(1);
-}
-
 const digits = ({ low, high }) => Math.max(0, Math.ceil(2 - Math.log10(high - low || 1)));
 
 /** A key with its draws before and after, and the range that holds them. */
 function drawnKeys(data) {
-  const { prior, summary } = data.calibration, names = summary.keys.map(({ key }) => key);
+  const { prior, summary } = data.calibration;
   return summary.keys.flatMap((row) => {
     const column = data.members.columns.find(({ name }) => name === row.key);
     if (!column || column.words.length) return [];
@@ -32,7 +27,7 @@ function drawnKeys(data) {
     return [
       {
         ...row,
-        name: shortName(row.key, names),
+        name: columnTitle(column),
         draws: [prior[row.key], after],
         low: Math.min(...all),
         high: Math.max(...all),
