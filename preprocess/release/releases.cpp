@@ -11,11 +11,12 @@
 #include "common/error.hpp"
 #include "common/gis/raster_file.hpp"
 #include "common/map/polygon.hpp"
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
-#include "preprocess/regions/regions.hpp"
+#include "preprocess/regions/way_down.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 

@@ -10,11 +10,11 @@
 
 #include "common/error.hpp"
 #include "common/gis/crs.hpp"
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
 #include "preprocess/regions/polygon_cover.hpp"
-#include "preprocess/regions/regions.hpp"
 #include "preprocess/terrain/elevation.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
@@ -250,7 +250,7 @@ Raster detected_lowering(const SurfacePair& s) {
 
 std::vector<Region> source_regions(const SurfacePair& s, const Raster& lowering, const SourceOptions& options) {
   std::vector<Region> regions =
-      lowering_regions(lowering, s.is_sliding_surface ? std::min(rim, options.threshold) : options.threshold);
+      regions_above(lowering, s.is_sliding_surface ? std::min(rim, options.threshold) : options.threshold);
   std::erase_if(regions, [&](const Region& region) {
     return std::ranges::none_of(region.cells, [&](std::size_t c) { return lowering.values[c] > options.threshold; });
   });

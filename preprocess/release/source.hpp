@@ -9,8 +9,8 @@
 #include "common/gis/raster_file.hpp"
 #include "common/map/polygon.hpp"
 #include "common/map/raster.hpp"
+#include "common/map/regions.hpp"
 #include "preprocess/options/options.hpp"
-#include "preprocess/regions/regions.hpp"
 #include "preprocess/release/sliding_surface.hpp"
 
 namespace talus::preprocess {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/scene/candidates.hpp"
+#include "preprocess/regions/way_down.hpp"
 
 #include <fmt/format.h>
 

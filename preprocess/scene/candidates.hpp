@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/map/raster.hpp"
+#include "common/map/regions.hpp"
 #include "preprocess/options/options.hpp"
-#include "preprocess/regions/regions.hpp"
 #include "preprocess/survey/change.hpp"
 
 namespace talus::preprocess {
@@ -35,7 +35,7 @@ struct Lowered {
   const Change& change;
 };
 
-/// Measures the largest ten of `regions` (lowering_regions()) that are no noise, the largest first. What rose is sought
+/// Measures the largest ten of `regions` (regions_above()) that are no noise, the largest first. What rose is sought
 /// as for the deposit (grown_slide()); what fell in larger or level regions is no part of a smaller one. A candidate is
 /// doubtful where
 /// - it is level before and after (is_level());

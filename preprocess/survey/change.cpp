@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/survey/change.hpp"
+#include "preprocess/regions/way_down.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +128,7 @@ std::vector<Region> sure_regions(const Change& change, const DepositOptions& how
   cut_fringe(grid, marked.values);
   for (std::size_t i = 0; i < grid.count(); ++i)
     if (change.stands_out(i, how.sure_levels)) marked.values[i] = 1;
-  std::vector<Region> regions = lowering_regions(marked, 0.5);
+  std::vector<Region> regions = regions_above(marked, 0.5);
   std::erase_if(regions, [&](const Region& region) {
     int sure = 0;
     bool noisy = false;
@@ -168,7 +169,7 @@ Near change_near(const Raster& before, const Raster& source, const Change& chang
       marked.values[c] = 1;
   growth.take(slide);
   Near near;
-  for (const Region& region : lowering_regions(marked, 0.5)) {
+  for (const Region& region : regions_above(marked, 0.5)) {
     if (!growth.reaches(region)) continue;
     near.rise += signed_sum(change, region.cells, inside, 1);
     near.fall += signed_sum(change, region.cells, inside, -1);

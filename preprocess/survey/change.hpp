@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
 #include "preprocess/options/options.hpp"
-#include "preprocess/regions/regions.hpp"
 
 namespace talus::preprocess {
 

@@ -10,8 +10,8 @@
 
 #include "common/map/fourier.hpp"
 #include "common/map/raster.hpp"
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
-#include "preprocess/regions/regions.hpp"
 
 namespace talus::preprocess {
 namespace {
@@ -231,7 +231,7 @@ void leave_out_changed(std::vector<Patch>& patches, const Placement& placement) 
     std::vector<double> marked(grid.count());
     for (std::size_t i = 0; i < marked.size(); ++i)
       marked[i] = std::abs(misfits[p][i] - centre) > limit;  // false for NaN
-    for (const Region& region : lowering_regions(marked_share(grid, marked), 0.5)) {
+    for (const Region& region : regions_above(marked_share(grid, marked), 0.5)) {
       if (region.cells.size() < least_region) continue;
       leave_out(region, grid, patches[p].stable);
       leave_out(region, grid, patches[p].unchanged);

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
-#include "preprocess/regions/regions.hpp"
 #include "preprocess/terrain/height_statistics.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
@@ -257,7 +257,7 @@ class Search {
   void look(const Is& is) {
     Raster marked{grid_, std::vector<double>(values_.size(), 0.0)};
     for (std::size_t i = 0; i < values_.size(); ++i) marked.values[i] = !taken_[i] && is(values_[i]);  // false for NaN
-    for (Region& region : lowering_regions(marked, 0.5))
+    for (Region& region : regions_above(marked, 0.5))
       if (region.cells.size() >= least_) judge(std::move(region.cells));
   }
 

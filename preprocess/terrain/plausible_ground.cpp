@@ -13,10 +13,11 @@
 #include <numbers>
 
 #include "common/gis/crs.hpp"
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/regions/regions.hpp"
+#include "preprocess/regions/way_down.hpp"
 #include "preprocess/terrain/height_statistics.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 

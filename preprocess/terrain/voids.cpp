@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
-#include "preprocess/regions/regions.hpp"
 #include "preprocess/terrain/triangulation.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 

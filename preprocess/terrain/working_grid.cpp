@@ -11,10 +11,10 @@
 
 #include "common/gis/crs.hpp"
 #include "common/gis/resampling.hpp"
+#include "common/map/regions.hpp"
 #include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "common/stage/stage.hpp"
-#include "preprocess/regions/regions.hpp"
 
 namespace talus::preprocess {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connected regions of lowering, and the way that a flow takes over a surface.
+// The way that a flow takes over a surface.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -12,32 +11,6 @@
 #include "common/map/raster.hpp"
 
 namespace talus::preprocess {
-
-/// Unmarks the marked cells [rows * columns] that hang together (8-connected) with `cells`, which are marked, and
-/// returns all of them in the order in which they are come upon.
-std::vector<std::array<int, 2>> take_connected(const MapGrid& grid, std::vector<char>& marked,
-                                               std::vector<std::array<int, 2>> cells);
-
-/// Cells (8-connected) that lie lower than before by more than a threshold.
-struct Region {
-  std::vector<std::size_t> cells;
-  double volume = 0;  // [m3]
-};
-
-/// Finds all regions where `lowering` [m] exceeds `threshold` [m], the largest by volume first. NaN counts as none.
-std::vector<Region> lowering_regions(const Raster& lowering, double threshold);
-
-/// The 3 x 3 cells around a cell, itself among them.
-struct Neighbours {
-  int marked = 0;  ///< of those inside, how many are marked
-  int inside = 0;  ///< how many lie on the map: 9, 6 at an edge, 4 in a corner
-};
-
-/// Counts the marked cells (above 0 in `marks` [rows * columns]) around a cell.
-Neighbours neighbours_of(const MapGrid& grid, const std::vector<double>& marks, int column, int row);
-
-/// Sets to 0 marked cells (above 0) with fewer than four of their eight neighbours marked: the fringe that noise gives.
-void cut_fringe(const MapGrid& grid, std::vector<double>& marked);
 
 /// Ways down over a surface, found only where they are asked for: from a cell to the steepest of its lower neighbours
 /// (O'Callaghan & Mark 1984), and out of a hollow over its lowest rim, as water would that fills it. Every hollow that
