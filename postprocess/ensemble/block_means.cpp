@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <utility>
+
+#include "common/map/regions.hpp"
 
 namespace talus::postprocess {
 namespace {
@@ -27,27 +31,28 @@ double mean_correlation(double dx, double dy, double side, double range) {
   return sum / std::pow(samples, 4);
 }
 
-/// The cells of a mass that have most of their neighbours in it; all of them where none has.
-std::vector<char> without_noise(const MapGrid& grid, const std::vector<char>& inside) {
-  constexpr int most = 5;  // of nine
-  std::vector<char> kept(inside.size(), 0);
-  bool any = false;
-  each_cell(grid, [&](int column, int row) {
-    int count = 0;
-    each_near(grid, {column, row}, 1, [&](int c, int r) { count += inside[grid.index(c, r)]; });
-    const std::size_t cell = grid.index(column, row);
-    kept[cell] = inside[cell] != 0 && count >= most ? 1 : 0;
-    any = any || kept[cell] != 0;
-  });
-  return any ? kept : inside;
+/// The cells of a mass without what noise gives: fringes, and patches that hold less than a block does. All of them
+/// where none is left.
+std::vector<char> without_noise(const MapGrid& grid, const std::vector<double>& surveyed,
+                                const std::vector<char>& mass) {
+  std::vector<double> marked(mass.begin(), mass.end());
+  cut_fringe(grid, marked);
+  for (std::size_t cell = 0; cell < marked.size(); ++cell) marked[cell] = marked[cell] > 0 ? surveyed[cell] : 0;
+  const std::vector<Region> patches = regions_above({grid, std::move(marked)}, 0);
+  double least = 0;
+  for (const Region& patch : patches) least += patch.volume / blocks_wanted;
+  std::vector<char> kept(mass.size(), 0);
+  for (const Region& patch : patches)
+    for (const std::size_t cell : patch.cells) kept[cell] = patch.volume >= least ? 1 : 0;
+  return std::ranges::find(kept, 1) != kept.end() ? kept : mass;
 }
 
 }  // namespace
 
 BlockMeans::BlockMeans(const MapGrid& grid, const std::vector<double>& surveyed, const std::vector<char>& mass,
-                       double least_side)
-    : cell_(grid.cell), block_of_(grid.count(), out) {
-  const std::vector<char> inside = without_noise(grid, mass);
+                       double least_side, double least)
+    : cell_(grid.cell), least_(least), block_of_(grid.count(), out) {
+  const std::vector<char> inside = without_noise(grid, surveyed, mass);
   const auto cells = static_cast<double>(std::ranges::count_if(inside, [](char one) { return one != 0; }));
   side_ = std::max(static_cast<int>(std::lround(std::sqrt(cells / blocks_wanted))),
                    static_cast<int>(std::ceil(least_side / cell_ - 1e-6)));
@@ -70,6 +75,9 @@ BlockMeans::BlockMeans(const MapGrid& grid, const std::vector<double>& surveyed,
   for (std::size_t block = 0; block < known.size(); ++block) {
     if (holds[block] == 0 || 2 * known[block] < side_ * side_) continue;
     const auto [column, row] = coarse.cell_of(block);
+    each_near(coarse, {column, row}, 1, [&](int c, int r) {
+      if (number[coarse.index(c, r)] == beyond) number[coarse.index(c, r)] = beside;
+    });
     number[block] = static_cast<int>(places_.size());
     places_.push_back({coarse.x(column), coarse.y(row)});
     cells_in_.push_back(known[block]);
@@ -97,20 +105,33 @@ std::vector<double> BlockMeans::of(const std::vector<double>& values) const {
     if (!std::isfinite(values[cell]) || block == out) continue;
     if (block >= 0)
       sums[static_cast<std::size_t>(block)] += values[cell] / cells_in_[static_cast<std::size_t>(block)];
-    else
-      sums.back() += std::max(0.0, values[cell]);
+    else if (values[cell] > (block == beside ? 0 : least_))
+      sums.back() += values[cell];
   }
-  sums.back() /= std::max(1.0, std::accumulate(cells_in_.begin(), cells_in_.end(), 0.0));
+  sums.back() /= all_cells();
   return sums;
 }
+
+double BlockMeans::volume_beside(const std::vector<double>& values) const {
+  double sum = 0;
+  for (std::size_t cell = 0; cell < values.size(); ++cell)
+    if (block_of_[cell] == beside && std::isfinite(values[cell])) sum += values[cell];
+  return sum / all_cells();
+}
+
+double BlockMeans::all_cells() const { return std::max(1.0, std::accumulate(cells_in_.begin(), cells_in_.end(), 0.0)); }
 
 std::vector<double> BlockMeans::covariance(const std::vector<double>& deviation, double range) const {
   const std::size_t n = count() + 1;
   std::vector<double> squares(n, 0.0), matrix(n * n, 0.0);
-  for (std::size_t cell = 0; cell < deviation.size(); ++cell)
-    if (const int block = block_of_[cell]; block >= 0 && std::isfinite(deviation[cell]))
-      squares[static_cast<std::size_t>(block)] +=
-          deviation[cell] * deviation[cell] / cells_in_[static_cast<std::size_t>(block)];
+  for (std::size_t cell = 0; cell < deviation.size(); ++cell) {
+    if (!std::isfinite(deviation[cell])) continue;
+    const int block = block_of_[cell];
+    const double square = deviation[cell] * deviation[cell];
+    if (block >= 0) squares[static_cast<std::size_t>(block)] += square / cells_in_[static_cast<std::size_t>(block)];
+    if (block == beside) matrix.back() += square / (all_cells() * all_cells());
+  }
+  matrix.back() *= std::max(1.0, std::numbers::pi / 5 * range * range / (cell_ * cell_));  // cells that err alike
   for (std::size_t a = 0; a + 1 < n; ++a) {
     if (!(range > 0)) matrix[a * n + a] = squares[a] / cells_in_[a];
     for (std::size_t b = 0; range > 0 && b + 1 < n; ++b)

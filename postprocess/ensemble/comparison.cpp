@@ -20,7 +20,7 @@ double root_mean_square(const std::vector<double>& values) {
 Compared compared_in(const BlockMeans& blocks, const char* name, const char* unit,
                      const std::vector<double>& surveyed) {
   Compared compared{name, unit, blocks.of(surveyed), blocks.places(), {}, 0, blocks.side() / 2, blocks.extent()};
-  compared.surveyed.back() = 0;  // the blocks hold all of the surveyed mass
+  compared.surveyed.back() = blocks.volume_beside(surveyed);
   compared.scale = root_mean_square({compared.surveyed.begin(), compared.surveyed.end() - 1});
   return compared;
 }
@@ -74,7 +74,7 @@ Comparison::Comparison(const EnsembleCounts& counts, const Survey& survey, const
   const bool kept = std::ranges::any_of(counts.deposit_thickness, [](const KeptThickness& one) { return one.kept(); });
   const std::vector<char> mass = cells_above(deposit, deposit_threshold);
   if (holds_any(mass) && kept) {
-    add_thickness(deposit, mass);
+    add_thickness(deposit, mass, std::max(deposit_threshold, survey.usual_level()));
   } else if (holds_any(mass)) {
     std::vector<double> covered = deposit;
     for (std::size_t cell = 0; cell < covered.size(); ++cell)
@@ -96,11 +96,11 @@ void Comparison::add(Compared compared, double side, Simulate simulate) {
                     std::vector<std::vector<double>>(counts_.states.size())});
 }
 
-void Comparison::add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside) {
+void Comparison::add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside, double least) {
   std::vector<double> measured = survey_.measured.empty() ? deposit : survey_.measured;
   for (std::size_t cell = 0; cell < measured.size(); ++cell)
     if (!std::isfinite(deposit[cell])) measured[cell] = nan;
-  const BlockMeans blocks(survey_.grid, measured, inside, counts_.scene.grid.cell);
+  const BlockMeans blocks(survey_.grid, measured, inside, counts_.scene.grid.cell, least);
   Compared compared = compared_in(blocks, thickness_compared, "m", measured);
   compared.error = blocks.covariance(deviation_of(survey_.error, measured.size()), survey_.error.correlation_length);
   const auto simulate = [this, blocks](std::size_t, const OnSurveyGrid* kept) {
@@ -113,7 +113,7 @@ void Comparison::add_outline(const char* name, const std::vector<double>& covere
                              const std::vector<Footprint>& footprints) {
   const std::vector<char> inside = cells_above(covered, 0);
   if (!holds_any(inside)) return;
-  const BlockMeans blocks(survey_.grid, covered, inside, counts_.scene.grid.cell);
+  const BlockMeans blocks(survey_.grid, covered, inside, counts_.scene.grid.cell, 0);
   Compared compared = compared_in(blocks, name, "1", covered);
   compared.error.assign(compared.surveyed.size() * compared.surveyed.size(), 0.0);
   const auto simulate = [this, blocks, &footprints](std::size_t k, const OnSurveyGrid*) {

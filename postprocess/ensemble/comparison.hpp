@@ -53,7 +53,7 @@ class Comparison {
     std::vector<std::vector<double>> by_discrepancy;  ///< [members]; empty: not compared
   };
   void add(Compared compared, double side, Simulate simulate);
-  void add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside);
+  void add_thickness(const std::vector<double>& deposit, const std::vector<char>& inside, double least);
   void add_outline(const char* name, const std::vector<double>& covered, const std::vector<Footprint>& footprints);
   void add_number(const CalibrateNumber& number);
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <random>
 #include <stdexcept>
 
 #include "common/map/limits.hpp"
@@ -109,7 +110,7 @@ struct Lobe {
 
 TEST(BlockMeans, keep_the_volume_and_part_what_lies_beyond) {
   const Lobe lobe;
-  const BlockMeans blocks(lobe.grid, lobe.thickness, lobe.inside, 5);
+  const BlockMeans blocks(lobe.grid, lobe.thickness, lobe.inside, 5, 0.1);
   EXPECT_EQ(blocks.side(), 10);
   const double whole = std::accumulate(lobe.thickness.begin(), lobe.thickness.end(), 0.0,
                                        [](double sum, double one) { return std::isnan(one) ? sum : sum + one; });
@@ -125,14 +126,41 @@ TEST(BlockMeans, keep_the_volume_and_part_what_lies_beyond) {
   EXPECT_NEAR(means.back(), 7 / (4.0 * static_cast<double>(blocks.count())), 1e-12);
 }
 
+TEST(BlockMeans, lie_on_no_patches_that_noise_gives) {
+  Lobe lobe;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 0.2);
+  std::vector<double> noisy = lobe.thickness;
+  std::vector<char> above(noisy.size());
+  for (std::size_t cell = 0; cell < noisy.size(); ++cell) {
+    noisy[cell] += noise(random);
+    above[cell] = noisy[cell] > 0.1 ? 1 : 0;  // three cells of ten beyond the lobe
+  }
+  const BlockMeans blocks(lobe.grid, noisy, above, 5, 0.1), clean(lobe.grid, lobe.thickness, lobe.inside, 5, 0.1);
+  EXPECT_LT(static_cast<double>(blocks.count()), 1.2 * static_cast<double>(clean.count()));
+}
+
+TEST(BlockMeans, count_beyond_what_a_survey_can_see_there) {
+  const Lobe lobe;
+  const BlockMeans blocks(lobe.grid, lobe.thickness, lobe.inside, 5, 0.1);
+  std::vector<double> thin(lobe.grid.count(), 0.0);
+  thin[lobe.grid.index(41, 20)] = 0.05;  // beside the lobe
+  thin[lobe.grid.index(55, 20)] = 0.05;  // far from it
+  const double cells = 4 * static_cast<double>(blocks.count());
+  EXPECT_NEAR(blocks.of(thin).back(), 0.05 / cells, 1e-15);
+  EXPECT_NEAR(blocks.volume_beside(thin), 0.05 / cells, 1e-15);
+  thin[lobe.grid.index(55, 20)] = 0.2;
+  EXPECT_NEAR(blocks.of(thin).back(), 0.25 / cells, 1e-15);
+}
+
 TEST(BlockMeans, are_no_smaller_than_the_cells_of_a_run) {
   const Lobe lobe;
-  EXPECT_EQ(BlockMeans(lobe.grid, lobe.thickness, lobe.inside, 40).side(), 40);
+  EXPECT_EQ(BlockMeans(lobe.grid, lobe.thickness, lobe.inside, 40, 0.1).side(), 40);
 }
 
 TEST(BlockMeans, have_the_covariance_of_means_of_correlated_errors) {
   const Lobe lobe;
-  const BlockMeans blocks(lobe.grid, lobe.thickness, lobe.inside, 5);
+  const BlockMeans blocks(lobe.grid, lobe.thickness, lobe.inside, 5, 0.1);
   const std::size_t n = blocks.count() + 1;
   const std::vector<double> deviation(lobe.grid.count(), 0.4);
   const std::vector<double> alone = blocks.covariance(deviation, 0), wide = blocks.covariance(deviation, 1e6),
@@ -157,7 +185,10 @@ TEST(BlockMeans, have_the_covariance_of_means_of_correlated_errors) {
         ++pairs;
       }
   EXPECT_GT(pairs, 20u);
-  for (std::size_t a = 0; a < n; ++a) EXPECT_EQ(some[a * n + n - 1], 0);
+  for (std::size_t a = 0; a + 1 < n; ++a) EXPECT_EQ(some[a * n + n - 1], 0);
+  const double beside = 36 * 4, inside = 60 * 4;  // cells of the ring of blocks, and of those within
+  EXPECT_NEAR(alone.back(), 0.16 * beside / (inside * inside), 1e-15);
+  EXPECT_NEAR(some.back(), alone.back() * std::numbers::pi / 5 * 64, 1e-12);
 }
 
 }  // namespace
