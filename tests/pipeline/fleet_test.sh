@@ -42,7 +42,10 @@ kill_worker() {
       [[ " ${cut[*]} " != *" $part "* ]] || continue
       if [[ $1 == yes ]]; then kill -KILL -- "-$worker"; else kill -KILL "$worker"; fi || continue
       sleep 0.2
-      if [[ -e out/counts.$part.h5 ]]; then fail "part $part was finished before its worker was killed"; fi
+      if [[ -e out/counts.$part.h5 ]]; then  # it was as good as done: one worker more may die for nothing
+        ((spare-- > 0)) || fail "part $part was finished before its worker was killed"
+        continue
+      fi
       cut+=("$part")
       return
     done
@@ -63,7 +66,7 @@ test_parts_of_killed_workers_are_done_again() {
   expect_exit 1 fleet recipe.toml out 2 --on nowhere
   expect_words "exit code 2" "2 of 2 parts failed"
 
-  local cut=() part code=0 map maps=0
+  local cut=() spare=1 part code=0 map maps=0
   fleet recipe.toml out 8 --on cpu --threads 1 >stdout 2>fleet.log </dev/null &
   local process=$!
   kill_worker yes
