@@ -129,9 +129,10 @@ std::vector<double> BlockMeans::covariance(const std::vector<double>& deviation,
     const int block = block_of_[cell];
     const double square = deviation[cell] * deviation[cell];
     if (block >= 0) squares[static_cast<std::size_t>(block)] += square / cells_in_[static_cast<std::size_t>(block)];
-    if (block == beside) matrix.back() += square / (all_cells() * all_cells());
+    if (block == beside) matrix.back() += square;
   }
-  matrix.back() *= std::max(1.0, std::numbers::pi / 5 * range * range / (cell_ * cell_));  // cells that err alike
+  const double err_alike = std::max(1.0, std::numbers::pi / 5 * range * range / (cell_ * cell_));  // cells
+  matrix.back() *= err_alike / std::pow(all_cells(), 2);
   for (std::size_t a = 0; a + 1 < n; ++a) {
     if (!(range > 0)) matrix[a * n + a] = squares[a] / cells_in_[a];
     for (std::size_t b = 0; range > 0 && b + 1 < n; ++b)

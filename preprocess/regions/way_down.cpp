@@ -9,8 +9,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/map/statistics.hpp"
-
 namespace talus::preprocess {
 
 std::vector<std::size_t> around(const MapGrid& grid, std::size_t cell) {
