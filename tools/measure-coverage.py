@@ -86,10 +86,10 @@ def write_survey(path, survey, scene, shape):
     image.GetRasterBand(1).WriteArray(survey.reshape(shape)[::-1].astype("f4"))
 
 
-def ranks_of(recipe, out, study, survey, noise, member, values):
+def ranks_of(recipe, out, study, survey, member, values):
     """Ranks of a truth's keys among the other members, by their likelihood, and how many draws n these stand for: with
     k of n draws below, a rank is (k + 1/2) / (n + 1)."""
-    given = [f"postprocess.survey.thickness={survey}", f"postprocess.survey.sigma_m={noise}"]
+    given = [f"postprocess.survey.thickness={survey}"]
     work = survey.with_suffix("")
     work.mkdir(exist_ok=True)
     for name in ("counts.h5", "members.h5"):
@@ -119,6 +119,7 @@ def main():
     parser.add_argument("--surveys", type=int, default=67)
     parser.add_argument("--members", type=int, default=8192)
     parser.add_argument("--noise", type=float, default=0.2, help="of a cell of the survey [m]")
+    parser.add_argument("--hide-error", action="store_true", help="do not give the noise as sigma_m")
     parser.add_argument("--seed", type=int, default=77)
     options = parser.parse_args()
     (options.out / "surveys").mkdir(parents=True, exist_ok=True)
@@ -127,6 +128,8 @@ def main():
     if not (options.out / "counts.h5").exists():
         run("preprocess", options.recipe, options.out, study)
         run("solve", options.recipe, options.out, study)
+    if not options.hide_error:
+        study.append(f"postprocess.survey.sigma_m={options.noise}")
     counts, members = h5py.File(options.out / "counts.h5"), h5py.File(options.out / "members.h5")
     scene = dict(counts["scene"].attrs)
     shape = (int(scene["rows"]), int(scene["columns"]))
@@ -142,7 +145,7 @@ def main():
         write_survey(path, survey, scene, shape)
 
     def ranks_and_draws(member):
-        return ranks_of(options.recipe, options.out, study, surveys[member], options.noise, member, values)
+        return ranks_of(options.recipe, options.out, study, surveys[member], member, values)
 
     with ThreadPoolExecutor(2) as pool:
         found = list(pool.map(ranks_and_draws, range(options.surveys)))

@@ -205,8 +205,8 @@ void of_error(const Scored& scored, Sheet& sheet) {
   const auto& error = scored.survey->error;
   if (error.sigma.empty() && error.noise > 0)
     sheet.note(fmt::format(
-        "Level of detection: the survey's error is not given. By what changed where the run left the ground alone it "
-        "is {:.2g} m (five standard deviations, 1 m at most); less counts as none, in the simulation too.",
+        "Level of detection: the survey's error is not given. By what was measured where the run left the ground "
+        "alone it is {:.2g} m (five standard deviations, 1 m at most); less counts as none, in the simulation too.",
         error.noise));
   if (error.sigma.empty()) return;
   sheet.note(fmt::format("Level of detection: values below {:g} sigma count as none, {} and simulated.",

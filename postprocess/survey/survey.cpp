@@ -275,8 +275,7 @@ std::optional<Survey> read_survey(const SurveyOptions& options, const RunMaps& m
   if (options.measures()) {
     survey.deposit_is_change = survey.footprint_is_change = options.thickness.empty();
     read_error(options, maps, survey);
-    if (survey.error.sigma.empty() && survey.deposit_is_change && survey.kind == ReferenceKind::survey)
-      survey.error.noise = noise_of(survey, maps);
+    if (survey.error.sigma.empty() && survey.kind == ReferenceKind::survey) survey.error.noise = noise_of(survey, maps);
     auto seen = detected(survey, survey.measured);
     survey.deposit = std::move(seen.deposit);
     if (survey.footprint_is_change) survey.footprint = std::move(seen.footprint);
@@ -363,9 +362,12 @@ double noise_of(const Survey& survey, const RunMaps& maps) {
   for (std::size_t i = 0; i < thickness.size(); ++i) {
     if (std::isnan(survey.measured[i])) continue;
     ++surveyed;
-    if (!(thickness[i] > 0)) left_alone.push_back(std::abs(survey.measured[i]));
+    if (!(thickness[i] > 0))
+      left_alone.push_back(survey.deposit_is_change ? -std::abs(survey.measured[i]) : survey.measured[i]);
   }
-  return 2 * left_alone.size() < surveyed || left_alone.empty() ? 0 : std::min(most, normal * median(left_alone));
+  if (2 * left_alone.size() < surveyed || left_alone.empty()) return 0;
+  const double usual = survey.deposit_is_change ? 0.5 : 0.25;
+  return std::clamp(-normal * quantile(std::move(left_alone), usual), 0.0, most);
 }
 
 DetectedChange detected(const Survey& survey, const std::vector<double>& value) {

@@ -39,7 +39,7 @@ struct SurveyError {
   std::vector<double> sigma;      ///< standard error of the measured value at each cell [m]; empty: not known
   double correlation_length = 0;  ///< range of a spherical correlation of the errors [m]; 0: cells are independent
   double detection = 0;           ///< level of detection over sigma; 0: off
-  double noise = 0;               ///< level of detection of a change whose sigma is not known (noise_of) [m]
+  double noise = 0;               ///< level of detection where sigma is not known (noise_of) [m]
 
   /// The level of detection of a cell: what is less counts as none, in the survey and in the simulation [m].
   double level(std::size_t cell) const { return sigma.empty() ? noise : detection * sigma[cell]; }
@@ -84,10 +84,11 @@ struct DetectedChange {
 /// Values below the level of detection count as 0; deposit is what is positive, footprint the size of the change.
 DetectedChange detected(const Survey& survey, const std::vector<double>& value);
 
-/// The level of detection of a surveyed change whose error is not given [m]: five times the standard deviation that the
-/// median of |change| tells where the run left the ground alone (1.4826 times, as of a normal distribution), so that
-/// no noise is taken for a slide. At most 1 m: what is larger there is what the run lacks. 0 where the run left alone
-/// less than half of the surveyed ground.
+/// The level of detection of a survey whose error is not given [m]: five standard deviations of what it measured where
+/// the run left the ground alone, so that no noise is taken for a slide. The median of |change| tells the deviation, or
+/// of a thickness the lower quartile, for what is negative there can only be noise (-0.6745 deviations of a normal
+/// distribution). At most 1 m: what is larger there is what the run lacks. 0 where the run left alone less than half of
+/// the surveyed ground.
 double noise_of(const Survey& survey, const RunMaps& maps);
 
 /// The simulation on the survey's grid, without what the survey could not have detected; NaN where it has nothing to

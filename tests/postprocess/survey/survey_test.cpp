@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The survey on disk and the one grid both sides are compared on.
 #include "postprocess/survey/survey.hpp"
+
+#include <random>
+
 #include "common/gis/crs.hpp"
 #include "common/gis/geotiff.hpp"
 #include "common/gis/raster_file.hpp"
@@ -333,6 +336,21 @@ TEST_F(SurveyTest, counts_no_noise_as_change_where_the_error_is_not_given) {
   }
   options_.difference = raster("difference.tif", small_grid(), noisy_change(run_.maps, 5));
   EXPECT_EQ(read_survey(options_, run_.maps, 0.1, {})->error.noise, 1) << "as large as slides: no noise";
+}
+
+TEST_F(SurveyTest, takes_negative_thickness_for_noise) {
+  const auto noise_of_thickness = [&](std::vector<double> thickness) {
+    options_.thickness = raster("thickness.tif", small_grid(), std::move(thickness));
+    return read()->error.noise;
+  };
+  std::mt19937 random(3);
+  std::normal_distribution<double> error(0, 0.1);
+  std::vector<double> noisy = block(small_grid(), 25, 35, 10, 20, 2.4), clipped;
+  for (double& value : noisy) value += error(random);
+  for (const double value : noisy) clipped.push_back(std::max(0.0, value));
+  EXPECT_NEAR(noise_of_thickness(noisy), 0.5, 0.05);
+  EXPECT_EQ(noise_of_thickness(clipped), 0);
+  EXPECT_EQ(noise_of_thickness(std::vector<double>(small_grid().count(), 2.0)), 0) << "a deposit that the run lacks";
 }
 
 TEST_F(SurveyTest, leaves_out_of_the_simulation_what_the_survey_could_not_detect) {
