@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
 #include "postprocess/ensemble/comparison.hpp"
+#include "postprocess/ensemble/maps_of_ensemble.hpp"
 #include "postprocess/fields/fields.hpp"
 #include "postprocess/score/contingency.hpp"
 
@@ -126,6 +128,31 @@ ScoreNames names_of_scores(const EnsembleCounts& counts, const Survey& survey, c
   return names;
 }
 
+/// To how many members' cells of a footprint belong. Members may be added at the same time.
+class CellShares {
+ public:
+  void add(const std::vector<double>& covered) {
+    const std::lock_guard<std::mutex> one(mutex_);
+    ++members_;
+    counts_.resize(covered.size(), 0);
+    for (std::size_t cell = 0; cell < covered.size(); ++cell)
+      if (covered[cell] > most_of_a_cell) ++counts_[cell];
+  }
+
+  ShareScore score(const char* of, const std::vector<double>& surveyed, double threshold) const {
+    std::vector<double> share = counts_;
+    for (double& value : share) value /= members_;
+    constexpr double few = 0.05, half = 0.5;
+    return {of, compare(share, few, surveyed, threshold, 1).hit_rate(),
+            compare(share, half, surveyed, threshold, 1).csi(), brier_score(share, surveyed, threshold)};
+  }
+
+ private:
+  std::mutex mutex_;
+  double members_ = 0;
+  std::vector<double> counts_;
+};
+
 /// The scores of all members against one survey, one column each.
 class Scores {
  public:
@@ -159,11 +186,13 @@ class Scores {
     const MapGrid& from = counts_.scene.grid;
     const MapGrid& to = survey_.grid;
     if (!survey_.footprint.empty()) {
-      const Contingency here = compare(covered_shares(counts_.flow[k], from, to), most_of_a_cell, survey_.footprint,
-                                       survey_.footprint_threshold, cell_area_);
+      const std::vector<double> touched = covered_shares(counts_.flow[k], from, to);
+      const Contingency here =
+          compare(touched, most_of_a_cell, survey_.footprint, survey_.footprint_threshold, cell_area_);
       flow_[0].values[k] = here.csi();
       flow_[1].values[k] = here.hit_rate();
       flow_[2].values[k] = here.false_alarm_ratio();
+      flow_shares_.add(touched);
     }
     std::optional<OnSurveyGrid> own;
     if (!surveyed_deposit_.empty() && counts_.deposit_thickness[k].kept())
@@ -195,6 +224,17 @@ class Scores {
     return columns;
   }
 
+  /// What the shares of all members agree with; nothing where the survey says no everywhere.
+  std::vector<ShareScore> of_shares() const {
+    std::vector<ShareScore> all;
+    if (!survey_.footprint.empty())
+      all.push_back(flow_shares_.score("footprint", survey_.footprint, survey_.footprint_threshold));
+    if (!surveyed_deposit_.empty())
+      all.push_back(deposit_shares_.score("deposit", surveyed_deposit_, options_.deposit_threshold));
+    std::erase_if(all, [](const ShareScore& one) { return std::isnan(one.held); });
+    return all;
+  }
+
   Json likelihood(bool drawn) const { return comparison_.any() ? comparison_.json(drawn) : Json(); }
 
  private:
@@ -203,6 +243,7 @@ class Scores {
         own ? own->covered : covered_shares(counts_.deposit[k], counts_.scene.grid, survey_.grid);
     deposit_[0].values[k] =
         compare(covered, most_of_a_cell, surveyed_deposit_, options_.deposit_threshold, cell_area_).csi();
+    deposit_shares_.add(covered);
     if (!own) return;
     const ThicknessError error = thickness_error(own->deposit, surveyed_deposit_, options_.deposit_threshold);
     thickness_[0].values[k] = error.rmse;
@@ -215,6 +256,7 @@ class Scores {
   const Options& options_;
   double cell_area_;
   Comparison comparison_;
+  CellShares flow_shares_, deposit_shares_;
   std::vector<RowColumn> flow_;       // overlap of the footprint of the flow
   std::vector<RowColumn> deposit_;    // overlap of the footprint of the deposit
   std::vector<RowColumn> thickness_;  // errors of the deposit's thickness
@@ -230,6 +272,7 @@ void add_scores(MemberRows& rows, const Ensemble& ensemble, const Survey& survey
     if (counts.states[k] == MemberState::counted) scores.score(k);
   });
   for (RowColumn& column : scores.columns()) rows.columns.push_back(std::move(column));
+  if (is_probability(ensemble.table.design)) rows.share_scores = scores.of_shares();
   rows.likelihood = scores.likelihood(ensemble.table.design == design_name(Design::posterior));
 }
 
@@ -313,7 +356,7 @@ const char* word_of(MemberState state) {
 MemberRows member_rows(const Ensemble& ensemble, const Options& options, const std::optional<Survey>& survey) {
   const EnsembleCounts& counts = ensemble.counts;
   const std::vector<std::string> none(counts.states.size());
-  MemberRows rows{counts.states, none, none, {}, {}};
+  MemberRows rows{counts.states, none, none, {}, {}, {}};
   for (const MemberWords& failure : counts.failures)
     rows.failures.at(static_cast<std::size_t>(failure.member)) = failure.words;
   for (const Finding& warning : counts.findings) {

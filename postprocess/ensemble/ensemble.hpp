@@ -64,12 +64,21 @@ struct RowColumn {
   std::vector<std::string> words;  ///< that it takes; empty: numbers
 };
 
+/// How the shares of the members that come to a cell agree with a surveyed footprint.
+struct ShareScore {
+  const char* of;     ///< "footprint" or "deposit"
+  double held = nan;  ///< share of the surveyed area to which more than 5 % of the members come
+  double csi = nan;   ///< critical success index of the cells to which more than half of them come
+  double brier = nan;
+};
+
 struct MemberRows {
   std::vector<MemberState> states;    ///< [members]
   std::vector<std::string> failures;  ///< [members]: why it failed or was left out; empty otherwise
   std::vector<std::string> warnings;  ///< [members]: what it warned of; empty otherwise
   std::vector<RowColumn> columns;
-  Json likelihood;  ///< likelihood.json (comparison.hpp); null: nothing is compared with a survey
+  Json likelihood;                       ///< likelihood.json (comparison.hpp); null: nothing is compared with a survey
+  std::vector<ShareScore> share_scores;  ///< where members are draws and there is a survey
 };
 
 /// The surveyed deposit where members' footprints can be compared with it: of a change not where there was a release.

@@ -63,6 +63,9 @@ Json run_json(const EnsemblePageInput& input) {
   const auto rule = hazard_rule(ensemble, input.options.hazard);
   json["hazard"] = rule ? Json(hazard_words(*rule)) : Json();
   json["survey"] = input.survey ? Json(input.survey->name) : Json();
+  json["share_scores"] = Json::array();
+  for (const ShareScore& one : input.rows.share_scores)
+    json["share_scores"].push_back({{"of", one.of}, {"held", one.held}, {"csi", one.csi}, {"brier", one.brier}});
   json["slides"] = ensemble.table.slides.has_value();
   json["sampled"] = is_sample(ensemble);
   const std::vector<std::int64_t> at_edge = counts.at_edge();

@@ -280,6 +280,12 @@ struct EnsembleResults {
   }
 
   void write_probabilities() {
+    for (const ShareScore& one : rows.share_scores)
+      log_info(
+          fmt::format("{} against {}: {:.1f} % of it is where more than 5 % of the members come; where more than half "
+                      "of them come, "
+                      "the CSI is {:.3f}; Brier score {:.3f}",
+                      one.of, survey->name, 100 * one.held, one.csi, one.brier));
     const auto sensitive = sensitivities(ensemble, rows);
     write("sensitivity.csv", sensitivity_csv(sensitive));
     add(write_probability_maps(made_folder("probability"), ensemble, options, residual));

@@ -60,6 +60,17 @@ Contingency compare(const std::vector<double>& simulated, double simulated_thres
   return areas;
 }
 
+double brier_score(const std::vector<double>& share, const std::vector<double>& surveyed, double threshold) {
+  double squares = 0, cells = 0;
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    const double there = surveyed[i] > threshold ? 1 : 0;
+    if (std::isnan(share[i]) || std::isnan(surveyed[i]) || (share[i] == 0 && there == 0)) continue;
+    squares += (share[i] - there) * (share[i] - there);
+    ++cells;
+  }
+  return ratio(squares, cells);
+}
+
 ThicknessError thickness_error(const std::vector<double>& simulated, const std::vector<double>& surveyed,
                                double threshold) {
   std::vector<double> differences;

@@ -41,6 +41,10 @@ struct Contingency {
 Contingency compare(const std::vector<double>& simulated, double simulated_threshold,
                     const std::vector<double>& surveyed, double surveyed_threshold, double cell_area);
 
+/// Mean of (share - surveyed)^2 over the cells where either is not 0, surveyed being 1 above `threshold` and else 0: 0
+/// = perfect, 1 = wrong throughout (Brier 1950). Cells with NaN in either are left out; NaN where there is no cell.
+double brier_score(const std::vector<double>& share, const std::vector<double>& surveyed, double threshold);
+
 /// Difference simulated - surveyed over the cells where either exceeds the threshold [m]; NaN where none does.
 struct ThicknessError {
   double rmse = 0, bias = 0, mean_absolute = 0;

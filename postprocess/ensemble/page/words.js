@@ -62,6 +62,9 @@ export function drawSummary(data) {
   const error = `\u00b1${number(100 * standardError(0.5, run.draws), 1)} %`;
   if (run.sampled) box.append(keyNumber("Error of a probability", error,
     "of one half, one sigma"));
+  for (const { of, held, csi, brier } of run.share_scores)
+    box.append(keyNumber(`Surveyed ${of} at more than 5 %`, `${number(100 * held, 1)} %`,
+      `more than half: CSI ${number(csi, 3)}; Brier score ${number(brier, 3)}`));
   for (const name of keyResults) {
     const column = members.columns.find((one) => one.name === name);
     if (!column || !column.values.some((value) => value !== null)) continue;

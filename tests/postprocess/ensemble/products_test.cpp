@@ -185,6 +185,25 @@ TEST_F(EnsembleProducts, score_every_member_against_the_survey) {
     if (test::reach_of(table_, static_cast<std::int64_t>(k)) != test::reach_of(table_, 3)) {
       EXPECT_FALSE(lines[k + 1].ends_with(",1,1,0,1,,")) << lines[k + 1];
     }
+  double held = 0, both = 0, either = 0, squares = 0, cells = 0, surveyed = 0;
+  for (std::size_t c = 0; c < scene.grid.count(); ++c) {
+    double share = 0;
+    for (std::int64_t k = 0; k < 40; ++k)
+      if (test::member_maps(scene, test::reach_of(table_, k), test::depth_of(table_, k)).peak_thickness[c] > 0.1)
+        share += 1.0 / 40;
+    const bool there = third.peak_thickness[c] > 0.1, here = share > 0.5;
+    surveyed += there;
+    held += there && share > 0.05;
+    both += here && there;
+    either += here || there;
+    cells += share > 0 || there;
+    squares += std::pow(share - there, 2);
+  }
+  EXPECT_LT(both, either);
+  EXPECT_EQ(held, surveyed);
+  EXPECT_TRUE(holds(
+      test::text_of(out_ / "ensemble.html"),
+      {fmt::format("\"of\":\"footprint\",\"held\":1.0,\"csi\":{},\"brier\":{:.12f}", both / either, squares / cells)}));
 }
 
 TEST_F(EnsembleProducts, say_how_far_every_kept_deposit_is_from_the_surveyed_thickness) {

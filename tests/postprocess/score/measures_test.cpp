@@ -89,6 +89,12 @@ TEST(Auroc, counts_pairs_and_halves_ties_from_perfect_order_to_none) {
   EXPECT_TRUE(std::isnan(auroc({1, 2}, {9, 9}, 1)));
 }
 
+TEST(BrierScore, is_the_mean_square_of_share_less_survey) {
+  EXPECT_DOUBLE_EQ(brier_score({0.5, 0, 1, 0, nan}, {2, 2, 0, 0, 2}, 1), (0.25 + 1 + 1) / 3);
+  EXPECT_EQ(brier_score({1, 0}, {2, 1}, 1), 0);
+  EXPECT_TRUE(std::isnan(brier_score({0}, {0}, 1)));
+}
+
 TEST(Residual, is_measured_in_units_of_sigma_and_has_no_value_without_a_cell) {
   //                                       r:  1    -2   0.5   no sigma  not surveyed  not counted
   const auto r = residual_of({3, 1, 2.5, 9, 9, 9}, {2, 2, 2, 1, nan, 1}, {1, 0.5, 1, 0, 1, 1}, {1, 1, 1, 1, 1, 0});
