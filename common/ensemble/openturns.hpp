@@ -52,6 +52,12 @@ struct SobolIndices {
   std::vector<double> total, total_low, total_high;
 };
 
+/// How far an output depends on an input, in whatever form.
+struct Dependence {
+  double r2 = 0;      ///< normalised HSIC: 0 independent, 1 at most
+  double chance = 1;  ///< p-value of independence
+};
+
 using Lists = std::vector<std::vector<double>>;
 
 /// Where the largest value of a function is looked for.
@@ -89,6 +95,10 @@ class Library {
   /// Standardised coefficients of a linear regression of the output's ranks on the inputs'. Empty where inputs depend
   /// linearly.
   virtual std::vector<double> rank_regression(const Lists& inputs, const std::vector<double>& outputs) const = 0;
+
+  /// Of each input: the Hilbert-Schmidt independence criterion of the ranks with Gaussian kernels as wide as their
+  /// deviation (Gretton et al. 2005; R2-HSIC of Da Veiga 2015), and its asymptotic p-value. Takes size^2 of memory.
+  virtual std::vector<Dependence> hsic(const Lists& inputs, const std::vector<double>& outputs) const = 0;
 
   /// Looks for the largest value of a function of two coordinates or more by COBYLA (Powell 1994), which asks for no
   /// derivative; the steps end at a tenth of the radius. What the function throws is thrown again.

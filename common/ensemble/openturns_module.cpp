@@ -11,6 +11,8 @@
 #include <openturns/CorrelationMatrix.hxx>
 #include <openturns/EvaluationImplementation.hxx>
 #include <openturns/GeometricProfile.hxx>
+#include <openturns/HSICEstimatorGlobalSensitivity.hxx>
+#include <openturns/HSICUStat.hxx>
 #include <openturns/LHSExperiment.hxx>
 #include <openturns/LogNormalMuSigma.hxx>
 #include <openturns/LowDiscrepancyExperiment.hxx>
@@ -25,6 +27,7 @@
 #include <openturns/SobolIndicesExperiment.hxx>
 #include <openturns/SobolSequence.hxx>
 #include <openturns/SpaceFillingC2.hxx>
+#include <openturns/SquaredExponential.hxx>
 #include <openturns/TBB.hxx>
 #include <openturns/Triangular.hxx>
 #include <openturns/TruncatedDistribution.hxx>
@@ -208,6 +211,19 @@ class Module : public Library {
     } catch (const OT::Exception&) {
       return {};
     }
+  }
+
+  std::vector<Dependence> hsic(const Lists& inputs, const std::vector<double>& outputs) const override {
+    const OT::Sample x = sample_of(inputs).rank(), y = sample_of({outputs}).rank();
+    OT::HSICEstimatorGlobalSensitivity::CovarianceModelCollection kernels;
+    for (const OT::Sample& ranks : {x, y})
+      for (const double deviation : ranks.computeStandardDeviation())
+        kernels.add(OT::SquaredExponential(OT::Point(1, deviation), OT::Point(1, 1.0)));
+    const OT::HSICEstimatorGlobalSensitivity estimator(kernels, x, y, OT::HSICUStat());
+    const OT::Point r2 = estimator.getR2HSICIndices(), chance = estimator.getPValuesAsymptotic();
+    std::vector<Dependence> all;
+    for (std::size_t n = 0; n < inputs.size(); ++n) all.push_back({r2[n], chance[n]});
+    return all;
   }
 
   void maximise(const std::function<double(const std::vector<double>&)>& function,

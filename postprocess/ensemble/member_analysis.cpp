@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
@@ -92,6 +95,39 @@ SensitivityIndex spearman_index(const std::string& key, double value, std::size_
   return {key, Measure::spearman, value, std::tanh(z - half), std::tanh(z + half)};
 }
 
+/// Some of the places from 0 to count - 1, the same ones every time.
+std::vector<std::size_t> sampled_places(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> all(count), some;
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::ranges::sample(all, std::back_inserter(some), static_cast<std::ptrdiff_t>(most), std::mt19937(1));
+  return some;
+}
+
+/// Adds what any form of dependence tells of the keys.
+void add_hsic(const std::vector<std::string>& keys, const std::vector<std::vector<double>>& inputs,
+              const std::vector<double>& values, Sensitivity& found) {
+  constexpr std::size_t most = 250;  // each with each
+  constexpr double doubtful = 0.05;
+  const std::vector<std::size_t> some = sampled_places(values.size(), most);
+  const std::vector<double> outputs = chosen(values, some);
+  std::vector<std::string> told, idle;
+  std::vector<std::vector<double>> columns;
+  for (std::size_t n = 0; n < keys.size() && varies(outputs); ++n)
+    if (auto column = chosen(inputs[n], some); varies(column)) {
+      told.push_back(keys[n]);
+      columns.push_back(std::move(column));
+    }
+  if (told.empty()) return;
+  const std::vector<openturns::Dependence> dependence = openturns::library().hsic(columns, outputs);
+  for (std::size_t n = 0; n < told.size(); ++n) {
+    found.indices.push_back({told[n], Measure::hsic, dependence[n].r2, nan, nan});
+    if (dependence[n].chance > doubtful) idle.push_back(told[n]);
+  }
+  if (idle.empty()) return;
+  found.note += fmt::format("{}no effect is told (HSIC, p > {}) of {}", found.note.empty() ? "" : "; ", doubtful,
+                            fmt::join(idle, ", "));
+}
+
 Sensitivity ranks(const MemberTable& table, const std::vector<double>& result) {
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < result.size(); ++k)
@@ -119,10 +155,12 @@ Sensitivity ranks(const MemberTable& table, const std::vector<double>& result) {
   const std::vector<double> correlation = openturns::library().rank_correlations(inputs, values);
   for (std::size_t n = 0; n < keys.size(); ++n)
     found.indices.push_back(spearman_index(keys[n], correlation[n], places.size()));
-  if (places.size() < keys.size() + 2) return found;
-  const std::vector<double> regression = openturns::library().rank_regression(inputs, values);
-  for (std::size_t n = 0; n < regression.size(); ++n)
-    found.indices.push_back({keys[n], Measure::srrc, regression[n], nan, nan});
+  if (places.size() >= keys.size() + 2) {
+    const std::vector<double> regression = openturns::library().rank_regression(inputs, values);
+    for (std::size_t n = 0; n < regression.size(); ++n)
+      found.indices.push_back({keys[n], Measure::srrc, regression[n], nan, nan});
+  }
+  add_hsic(keys, inputs, values, found);
   return found;
 }
 
@@ -205,6 +243,7 @@ const MeasureWords& measure_words(SensitivityMeasure measure) {
                                        {"sobol_total", "Sobol index, total"},
                                        {"spearman_rank_correlation", "Spearman's rank correlation"},
                                        {"standardised_rank_regression", "Standardised rank regression"},
+                                       {"r2_hsic", "R2-HSIC"},
                                        {"swing", "Swing, one key at a time"}};
   return words[static_cast<std::size_t>(measure)];
 }

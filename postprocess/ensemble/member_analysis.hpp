@@ -18,6 +18,7 @@ enum class SensitivityMeasure {
   total_order,  ///< likewise with all it does together with others (Homma and Saltelli 1996)
   spearman,     ///< rank correlation
   srrc,         ///< standardised coefficient of a linear regression of ranks (Iman and Conover 1979)
+  hsic,         ///< R2-HSIC of ranks: dependence of any form (Da Veiga 2015)
   swing,        ///< range of the result while the key alone goes over its levels [unit of the result]
 };
 
@@ -38,9 +39,10 @@ struct Sensitivity {
 /// The indices of a result [members], NaN where there is none. Design "sensitivity": Sobol indices by Saltelli's
 /// estimators (2002), with bootstrapped confidence; the k-th member of every block is left out where one of them is
 /// missing. Design "one-at-a-time": swings. Otherwise Spearman's rank correlation, with the interval of Fisher's
-/// transformation and the variance 1.06 / (n - 3) (Fieller, Hartley and Pearson 1957), and standardised rank
-/// regression. Keys that take more than two words have no ranks and are left out of these. Throws std::logic_error
-/// where table and result differ in their length.
+/// transformation and the variance 1.06 / (n - 3) (Fieller, Hartley and Pearson 1957), standardised rank regression,
+/// and R2-HSIC over 250 members at most, with a note of the keys that it tells no effect of (p > 0.05). Keys that
+/// take more than two words have no ranks and are left out of these. Throws std::logic_error where table and result
+/// differ in their length.
 Sensitivity sensitivity(const MemberTable& table, const std::vector<double>& result);
 
 /// What a measure is called: "sobol_total" in files, "Sobol index, total" by readers.

@@ -51,7 +51,7 @@ function notes(found, data) {
     parts.push(
       `The design \u201c${data.run.design}\u201d gives no Sobol indices (design = "sensitivity" does): these are ` +
         "correlations of ranks, 1 where the result only rises with the key and \u22121 where it only falls. " +
-        "Lines: 95 %.",
+        "Lines: 95 %. R2-HSIC is 0 where the result does not depend on the key and 1 at most, whatever the form.",
     );
   if (measures.has("swing")) parts.push("Range of the result while the key alone goes over its levels.");
   if (found.note) parts.push(`${found.note[0].toUpperCase()}${found.note.slice(1)}.`);

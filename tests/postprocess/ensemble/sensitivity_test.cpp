@@ -180,6 +180,19 @@ TEST(Sensitivity, gives_rank_correlations_that_do_not_care_for_the_scale) {
     }
 }
 
+TEST(Sensitivity, tells_by_hsic_what_ranks_cannot) {
+  const MemberTable table = drawn(400, "sobol");
+  const Sensitivity found =
+      sensitivity(table, results_of(table, [](const std::vector<double>& x) { return std::exp(x[0] * x[0]); }));
+  EXPECT_NEAR(index_of(found, "a", SensitivityMeasure::spearman), 0, 0.15) << "it falls and rises";
+  EXPECT_GT(index_of(found, "a", SensitivityMeasure::hsic), 0.2);
+  EXPECT_NEAR(index_of(found, "b", SensitivityMeasure::hsic), 0, 0.02);
+  EXPECT_TRUE(holds(found.note, {"no effect is told (HSIC, p > 0.05) of b"})) << found.note;
+  std::vector<double> rare(400, 0.0);
+  rare[7] = 1;
+  EXPECT_NO_THROW(sensitivity(table, rare)) << "the members that are compared may have one result";
+}
+
 TEST(Sensitivity, says_why_there_is_none_and_gives_the_swing_of_keys_that_vary_alone) {
   const MemberTable table = drawn(10, "sobol");
   EXPECT_EQ(sensitivity(table, std::vector<double>(10, 3.0)).note, "the result is the same in all members");
