@@ -77,12 +77,17 @@ class Model {
     journal_["made"].push_back(std::move(batch));
     if (known == known_.end()) write_text(file_, journal_.dump() + "\n");
     runs_ += places.size();
+    for (std::size_t k = 0; k < places.size(); ++k) keep_best(places[k], found[k]);
     const auto best = *std::ranges::max_element(found);
     const auto failed = std::ranges::count(found, impossible);
     log_info(fmt::format("{} runs{}: largest log-likelihood {:.2f}{}", runs_, known != known_.end() ? " (known)" : "",
                          best, failed > 0 ? fmt::format("; {} failed", failed) : ""));
     return found;
   }
+
+  std::size_t runs() const { return runs_; }
+  /// Of all runs the most probable one: where prior times likelihood is largest.
+  const Places& best() const { return best_; }
 
   /// The request of the ensemble whose members are these places.
   Request members_at(const Places& places) const {
@@ -131,6 +136,15 @@ class Model {
  private:
   static constexpr double smallest = 1e-12;  // of a share
 
+  void keep_best(const Places::value_type& place, double log_likelihood) {
+    double squares = 0;
+    for (const double one : place) squares += one * one;
+    const double density = log_likelihood - squares / 2;
+    if (!best_.empty() && !(density > density_)) return;
+    best_ = {place};
+    density_ = density;
+  }
+
   static std::vector<double> numbers_in(const Json& list) {
     std::vector<double> numbers;
     for (const Json& one : list) numbers.push_back(one.is_number() ? one.get<double>() : impossible);
@@ -144,6 +158,8 @@ class Model {
   std::string mark_;
   std::vector<Json> known_;  ///< batches of earlier calls
   std::size_t runs_ = 0;
+  Places best_;  ///< one
+  double density_ = impossible;
 };
 
 /// Refuses a recipe that gives no distributions, or members of another kind.
@@ -211,19 +227,6 @@ std::vector<DiscrepancySummary> discrepancies_in(const fs::path& file) {
     all.push_back(std::move(one));
   }
   return all;
-}
-
-/// "key=value" of the most probable draw.
-std::vector<std::string> best_values(const Posterior& draws, const MemberTable& table) {
-  const auto density = [&](std::size_t k) {
-    double squares = 0;
-    for (const double one : draws.places[k]) squares += one * one;
-    return draws.log_likelihoods[k] - squares / 2;
-  };
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < draws.places.size(); ++k)
-    if (density(k) > density(best)) best = k;
-  return table.values_of(static_cast<std::int64_t>(best), "");
 }
 
 std::string posterior_csv(const Posterior& draws, const MemberTable& table) {
@@ -295,7 +298,7 @@ class Calibration {
                          larger ? fmt::format(", first on cells {:g} times as large", factor_) : ""));
     const Posterior draws = draw_posterior(first, static_cast<unsigned>(options_.seed), models);
     log_steps(draws);
-    const MemberTable prior = own.drawn(first);
+    const MemberTable prior = own.drawn(first), most_probable = own.drawn(own.best());
     say_noise(draws, own.computed(draws.places));
     const MemberTable posterior = read_member_table(EnsemblePaths{request_.out}.members());
     PosteriorSummary summary = summary_of(draws, prior, posterior);
@@ -307,9 +310,9 @@ class Calibration {
     journal_["summary"] = json_of(summary);
     write_text(file_, journal_.dump() + "\n");
     std::vector<std::string> best = request_.set;
-    for (const std::string& value : best_values(draws, posterior)) best.push_back(value);
+    for (const std::string& value : most_probable.values_of(0, "")) best.push_back(value);
     best.emplace_back("ensemble.members=0");
-    std::vector<std::string> lines{fmt::format("The most probable of {} draws after the survey:", draws.places.size())};
+    std::vector<std::string> lines{fmt::format("The most probable of {} runs:", own.runs())};
     for (const std::string& line : table_lines(summary)) lines.push_back(line);
     fitted_.write(best, lines);
     for (const std::string& line : table_lines(summary)) log_info(line);

@@ -109,7 +109,7 @@ std::vector<std::string> table_lines(const PosteriorSummary& summary) {
   std::vector<std::string> lines{
       fmt::format("{:{}}  {:>24}  {:>24}  {:>5}", "", width, "before: 5, 50, 95 %", "after: 5, 50, 95 %", "left")};
   const auto three = [](const Quantiles& of) {
-    return fmt::format("{:8.4g}{:8.4g}{:8.4g}", of.low, of.median, of.high);
+    return fmt::format(" {:7.4g} {:7.4g} {:7.4g}", of.low, of.median, of.high);
   };
   for (const KeySummary& key : summary.keys)
     lines.push_back(fmt::format("{:{}}  {:>24}  {:>24}  {:>5}", key.key, width, three(key.prior), three(key.posterior),

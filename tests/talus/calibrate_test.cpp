@@ -3,6 +3,8 @@
 // talus calibrate on a scene whose survey is a run of known friction.
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include <nlohmann/json.hpp>
 
 #include "common/ensemble/member_table.hpp"
@@ -32,10 +34,24 @@ struct CalibrateInProcess : test::SurveyedBowl {
     request.set = set;
     return calibrate_scene(request);
   }
-  nlohmann::json summary(const std::string& out = "out") const {
-    return nlohmann::json::parse(test::text_of(scratch / out / "calibration.json"))["summary"];
+  nlohmann::json calibration(const std::string& out = "out") const {
+    return nlohmann::json::parse(test::text_of(scratch / out / "calibration.json"));
   }
+  nlohmann::json summary(const std::string& out = "out") const { return calibration(out)["summary"]; }
 };
+
+/// The angle between `low` and `high` of the run with the largest prior times likelihood.
+double angle_of_best(const nlohmann::json& batches, double low, double high) {
+  double best = -1e300, share = 0;
+  for (const auto& batch : batches)
+    for (std::size_t k = 0; k < batch["draws"].size(); ++k) {
+      const double place = batch["draws"][k][0], found = batch["log_likelihood"][k].get<double>() - place * place / 2;
+      if (found <= best) continue;
+      best = found;
+      share = std::erfc(-place / std::numbers::sqrt2) / 2;
+    }
+  return low + (high - low) * share;
+}
 
 constexpr const char* idle_key =
     "[[ensemble.vary]]\nkey = \"solve.material.youngs_modulus_Pa\"\nlow = 1.0e6\nhigh = 1.000001e6\n";
@@ -53,6 +69,8 @@ TEST_F(CalibrateInProcess, finds_the_friction_of_the_survey_and_gives_it_to_the_
   const std::string fitted = test::text_of(scratch / "fitted.toml");
   EXPECT_TRUE(test::holds(fitted, {"# Fitted by talus calibrate", "members = 0", "friction_is = \"fitted\""}))
       << fitted;
+  EXPECT_NEAR(std::stod(fitted.substr(fitted.find("\nfriction_angle_deg = ") + 22)),
+              angle_of_best(calibration()["batches"], 12, 28), 1e-9);
   EXPECT_TRUE(test::holds(listener.text, {"no discrepancy is found"})) << "the survey is a run of the same model";
   scratch.write("recipe.toml", recipe(24) + "[ensemble]\nmembers = 8\nprior = \"out/posterior.csv\"\n");
   const BindContext bind(listener.own);
