@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -220,6 +221,19 @@ void EnsembleCounts::fail(std::int64_t member, std::string words) {
 void EnsembleCounts::leave_out(std::int64_t member, std::string words) {
   states.at(place_of(member)) = MemberState::left_out;
   if (!words.empty()) add_in_order(failures, {member, std::move(words)});
+}
+
+const char* unit_at_gauge(const std::string& name) {
+  const auto* const of = std::ranges::find_if(
+      gauge_numbers, [&](const GaugeNumber& number) { return name.ends_with(std::string("_") + number.name); });
+  return of == std::end(gauge_numbers) ? "1" : of->unit;
+}
+
+std::vector<std::string> EnsembleCounts::names_at_gauges() const {
+  std::set<std::string> names;
+  for (const MemberResult& result : results)
+    for (const auto& [name, value] : result.at_gauges) names.insert(name);
+  return {names.begin(), names.end()};
 }
 
 bool is_at_edge(const MemberResult& result) { return result.edge_cells > 0 || result.volume_outflow > 0; }

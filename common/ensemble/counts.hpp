@@ -55,7 +55,24 @@ struct MemberResult {
   double largest_thickness = nan, largest_deposit = nan, largest_speed = nan, largest_pressure = nan;
   double p99_thickness = nan, p99_deposit = nan, p99_speed = nan, p99_pressure = nan;
   double time_end = nan, steps = nan, wall_time = nan, edge_cells = nan;
+  std::map<std::string, double> at_gauges = {};  ///< by "gauge_NAME_" and the name of a GaugeNumber
 };
+
+/// A number of a member at a gauge: what a map holds in its cell.
+struct GaugeNumber {
+  const char* name;  ///< with its unit: "arrival_s"
+  const char* unit;
+  MapMember values;
+};
+inline constexpr GaugeNumber gauge_numbers[] = {
+    {"arrival_s", "s", &RunMaps::arrival_time},
+    {"peak_thickness_m", "m", &RunMaps::peak_thickness},
+    {"peak_speed_m_s", "m s-1", &RunMaps::peak_speed},
+    {"peak_pressure_kPa", "kPa", &RunMaps::peak_pressure_kPa},
+};
+
+/// The unit of a number of MemberResult::at_gauges.
+const char* unit_at_gauge(const std::string& name);
 
 /// A number of MemberResult, wherever it goes.
 struct ResultNumber {
@@ -134,7 +151,8 @@ struct EnsembleCounts {
   /// Where a member of the part stands in the lists.
   std::size_t place_of(std::int64_t member) const { return static_cast<std::size_t>(member - part.first); }
   MemberState state_of(std::int64_t member) const { return states.at(place_of(member)); }
-  std::int64_t count(MemberState state) const;  ///< the number of members of a state
+  std::int64_t count(MemberState state) const;       ///< the number of members of a state
+  std::vector<std::string> names_at_gauges() const;  ///< of what members measured there
   /// Numbers of counted members that came to the edge of their grid, or left it.
   std::vector<std::int64_t> at_edge() const;
   MapGrid grid_of(std::int64_t member) const;  ///< the grid on which a counted member's deposit is kept

@@ -104,6 +104,7 @@ std::vector<CellWindow> read_member_windows(const h5::File& file, std::size_t co
   return windows;
 }
 
+constexpr const char* gauges_group = "/members/gauges";
 constexpr const char* grids_group = "/members/grids";
 
 /// The grids of members whose cells are not the scene's, by member.
@@ -139,6 +140,18 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
     file.write_list<double>(path, values);
     file.set_text(path, "unit", number.unit);
     file.set_text(path, "long_name", number.meaning);
+  }
+  const std::vector<std::string> at_gauges = counts.names_at_gauges();
+  if (!at_gauges.empty()) file.make_group(gauges_group);
+  for (const std::string& name : at_gauges) {
+    std::vector<double> values;
+    for (const MemberResult& result : counts.results) {
+      const auto found = result.at_gauges.find(name);
+      values.push_back(found == result.at_gauges.end() ? nan : found->second);
+    }
+    const std::string path = fmt::format("{}/{}", gauges_group, name);
+    file.write_list<double>(path, values);
+    file.set_text(path, "unit", unit_at_gauge(name));
   }
   h5::write_windows(file, "/members/window", counts.windows);
   write_footprints(file, "/members/release", counts.release);
@@ -191,6 +204,11 @@ void read_members(const h5::File& file, EnsembleCounts& counts) {
   for (const ResultNumber& number : result_numbers) {
     const auto values = file.read<double>(std::string("/members/results/") + number.name, {count}, h5::finite_or_none);
     for (std::size_t k = 0; k < values.size(); ++k) counts.results[k].*(number.value) = values[k];
+  }
+  for (const std::string& name : file.exists(gauges_group) ? file.children(gauges_group) : std::vector<std::string>()) {
+    const auto values = file.read<double>(fmt::format("{}/{}", gauges_group, name), {count}, h5::finite_or_none);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (counts.states[k] == MemberState::counted) counts.results[k].at_gauges[name] = values[k];
   }
   counts.windows = read_member_windows(file, counts.states.size(), counts.scene.grid);
   counts.grids = read_grids(file, counts.part);

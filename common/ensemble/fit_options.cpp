@@ -41,9 +41,9 @@ void CalibrateNumber::describe(recipe::Visitor& v) {
   std::vector<std::string_view> known;
   for (const ResultNumber& number : result_numbers) known.emplace_back(number.name);
   v.text("result", result, "a result of members.csv that was measured, with its unit: \"largest_speed_m_s\"");
-  v.needs(std::ranges::find(known, result) != known.end(),
+  v.needs(std::ranges::find(known, result) != known.end() || result.starts_with("gauge_"),
           {fmt::format("[[calibrate.number]] result = \"{}\"", result), "members have no result of this name",
-           fmt::format("Give one of {}", fmt::join(known, ", "))});
+           fmt::format("Give one of {}, or at a gauge as \"gauge_NAME_arrival_s\"", fmt::join(known, ", "))});
   v.number("value", value, recipe::any, "what was measured");
   v.number("deviation", deviation, recipe::not_negative, "its standard error");
   v.needs(value != 0, {"[[calibrate.number]] value is 0",

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include <fmt/ranges.h>
 
 #include "common/map/limits.hpp"
 #include "postprocess/ensemble/block_means.hpp"
@@ -125,10 +128,22 @@ void Comparison::add_outline(const char* name, const std::vector<double>& covere
 void Comparison::add_number(const CalibrateNumber& number) {
   const auto* const of =
       std::ranges::find_if(result_numbers, [&](const ResultNumber& one) { return number.result == one.name; });
-  Compared compared{
-      number.result, of->unit, {number.value}, {}, {number.deviation * number.deviation}, std::abs(number.value), 0, 0};
-  const auto simulate = [this, of](std::size_t k, const OnSurveyGrid*) {
-    return Simulated{{counts_.results[k].*(of->value)}, {}};
+  const bool at_gauge = of == std::end(result_numbers);
+  if (const auto names = counts_.names_at_gauges(); at_gauge && std::ranges::find(names, number.result) == names.end())
+    throw DataError({fmt::format("[[calibrate.number]] result = \"{}\": no member has it", number.result),
+                     names.empty() ? "[solve] has no gauges" : fmt::format("there are {}", fmt::join(names, ", ")),
+                     "Name a [[solve.gauge]], and run talus-solve again"});
+  Compared compared{number.result,
+                    at_gauge ? unit_at_gauge(number.result) : of->unit,
+                    {number.value},
+                    {},
+                    {number.deviation * number.deviation},
+                    std::abs(number.value),
+                    0,
+                    0};
+  const auto simulate = [this, of, at_gauge, name = number.result](std::size_t k, const OnSurveyGrid*) {
+    const MemberResult& result = counts_.results[k];
+    return Simulated{{at_gauge ? result.at_gauges.at(name) : result.*(of->value)}, {}};
   };
   add(std::move(compared), 0, simulate);
 }

@@ -14,6 +14,7 @@
 #include "common/run/run_file.hpp"
 #include "common/stage/findings.hpp"
 #include "solver/ensemble/in_flight.hpp"
+#include "solver/run/recorders/history.hpp"
 #include "solver/run/run_stage.hpp"
 
 namespace talus::solver {
@@ -53,6 +54,19 @@ std::int64_t cells_at_edge(const RunMaps& maps) {
       if (edge && maps.peak_thickness[grid.index(column, row)] > 0) ++count;
     }
   return count;
+}
+
+/// The numbers of a member at its gauges, in whose cell the maps are read.
+std::map<std::string, double> measured_at(const std::vector<GaugeOptions>& gauges, const RunMaps& maps) {
+  std::map<std::string, double> numbers;
+  for (const GaugeOptions& gauge : gauges) {
+    const auto [x, y] = in_cells(maps.grid, gauge.x, gauge.y);
+    const int column = static_cast<int>(std::lround(x)), row = static_cast<int>(std::lround(y));
+    for (const GaugeNumber& number : gauge_numbers)
+      numbers[prefix_of("gauge", gauge.name) + number.name] =
+          maps.grid.holds(column, row) ? (maps.*number.values)[maps.grid.index(column, row)] : nan;
+  }
+  return numbers;
 }
 
 /// What a killed process may lose [s]. What is finished is saved after the first member, so that a folder that takes
@@ -191,6 +205,7 @@ std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, con
   MemberRun run;
   run.maps = final_maps(end, loop.stepper().solver().thickness());
   run.result = measured(run.maps, run.maps.threshold);
+  run.result.at_gauges = measured_at(plan->options.gauges, run.maps);
   const SlideVolumes volumes = slide_volumes(end, outflow);
   run.result.volume_released = volumes.released;
   run.result.volume_final = volumes.final;

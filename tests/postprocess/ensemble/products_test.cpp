@@ -11,6 +11,7 @@
 #include "common/gis/geotiff.hpp"
 #include "common/gis/raster_file.hpp"
 #include "common/stage/context.hpp"
+#include "postprocess/ensemble/likelihood.hpp"
 #include "postprocess/ensemble/maps_of_ensemble.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
 #include "tests/common/findings.hpp"
@@ -228,6 +229,30 @@ TEST_F(EnsembleProducts, say_how_far_every_kept_deposit_is_from_the_surveyed_thi
     EXPECT_NEAR(rmse, std::sqrt(squares / cells), deposit_quantum) << line;
     EXPECT_NEAR(bias, sum / cells, deposit_quantum) << line;
   }
+}
+
+TEST_F(EnsembleProducts, compare_what_was_measured_at_a_gauge) {
+  keep_deposits("monte-carlo");
+  const auto logarithms = [&] {
+    run_it();
+    return Json::parse(test::text_of(out_ / "likelihood.json"))["log_likelihood"];
+  };
+  const auto before = logarithms();
+  EXPECT_TRUE(holds(rows().at(0), {",gauge_bridge_arrival_s,"}));
+  recipe_ += "[[calibrate.number]]\nresult = \"gauge_bridge_arrival_s\"\nvalue = 11.0\ndeviation = 0.5\n";
+  const auto after = logarithms();
+  const Likelihood likelihood({"arrival", "s", {11.0}, {}, {0.25}, 11.0, 0, 0});
+  for (std::int64_t k = 0; k < 40; ++k) {
+    const double arrival = test::result_of(table_, k).at_gauges.at("gauge_bridge_arrival_s");
+    const auto at = static_cast<std::size_t>(k);
+    EXPECT_EQ(after[at].is_null(), std::isnan(arrival)) << "a run that never comes there cannot be";
+    if (std::isfinite(arrival)) {
+      EXPECT_NEAR(after[at].get<double>() - before[at].get<double>(),
+                  log_mean(likelihood.by_discrepancy({{arrival}, {}})), 1e-9);
+    }
+  }
+  recipe_ += "[[calibrate.number]]\nresult = \"gauge_dam_arrival_s\"\nvalue = 11.0\ndeviation = 0.5\n";
+  EXPECT_TRUE(holds(test::fault_of<DataError>([&] { run_it(); }), {"no member has it", "gauge_bridge_arrival_s"}));
 }
 
 TEST_F(EnsembleProducts, of_a_calibration_show_what_it_leaves_unexplained) {

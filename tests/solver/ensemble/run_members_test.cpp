@@ -99,6 +99,20 @@ TEST_P(RunMembers, gives_the_99th_percentile_beside_every_largest_value) {
   EXPECT_LT(r.p99_speed, r.largest_speed);
 }
 
+TEST_P(RunMembers, measures_at_gauges_what_the_maps_hold_there) {
+  const SmallEnsemble ensemble(small_table(), "[[solve.gauge]]\nname = \"foot\"\nat_m = [16.4, 8.3]\n");
+  const auto run = run_member(ensemble.members().plan(0), make_device(GetParam()));
+  ASSERT_TRUE(run);
+  const std::size_t cell = run->maps.grid.index(16, 8);
+  const auto& at = run->result.at_gauges;
+  ASSERT_EQ(at.size(), std::size(gauge_numbers));
+  EXPECT_EQ(at.at("gauge_foot_arrival_s"), run->maps.arrival_time[cell]);
+  EXPECT_EQ(at.at("gauge_foot_peak_thickness_m"), run->maps.peak_thickness[cell]);
+  EXPECT_EQ(at.at("gauge_foot_peak_speed_m_s"), run->maps.peak_speed[cell]);
+  EXPECT_EQ(at.at("gauge_foot_peak_pressure_kPa"), run->maps.peak_pressure_kPa[cell]);
+  EXPECT_GT(at.at("gauge_foot_peak_thickness_m"), 0);
+}
+
 TEST_P(RunMembers, lets_in_what_each_member_alone_would_let_in) {
   const MemberTable table{
       .design = "table",
