@@ -98,6 +98,7 @@ class Library {
 
   /// Of each input: the Hilbert-Schmidt independence criterion of the ranks with Gaussian kernels as wide as their
   /// deviation (Gretton et al. 2005; R2-HSIC of Da Veiga 2015), and its asymptotic p-value. Takes size^2 of memory.
+  /// Empty where that has none: of few values, or of values most of which are the same.
   virtual std::vector<Dependence> hsic(const Lists& inputs, const std::vector<double>& outputs) const = 0;
 
   /// Looks for the largest value of a function of two coordinates or more by COBYLA (Powell 1994), which asks for no

@@ -220,10 +220,14 @@ class Module : public Library {
       for (const double deviation : ranks.computeStandardDeviation())
         kernels.add(OT::SquaredExponential(OT::Point(1, deviation), OT::Point(1, 1.0)));
     const OT::HSICEstimatorGlobalSensitivity estimator(kernels, x, y, OT::HSICUStat());
-    const OT::Point r2 = estimator.getR2HSICIndices(), chance = estimator.getPValuesAsymptotic();
-    std::vector<Dependence> all;
-    for (std::size_t n = 0; n < inputs.size(); ++n) all.push_back({r2[n], chance[n]});
-    return all;
+    try {
+      const OT::Point r2 = estimator.getR2HSICIndices(), chance = estimator.getPValuesAsymptotic();
+      std::vector<Dependence> all;
+      for (std::size_t n = 0; n < inputs.size(); ++n) all.push_back({r2[n], chance[n]});
+      return all;
+    } catch (const std::exception&) {  // its gamma function overflows
+      return {};
+    }
   }
 
   void maximise(const std::function<double(const std::vector<double>&)>& function,

@@ -119,7 +119,7 @@ void add_hsic(const std::vector<std::string>& keys, const std::vector<std::vecto
     }
   if (told.empty()) return;
   const std::vector<openturns::Dependence> dependence = openturns::library().hsic(columns, outputs);
-  for (std::size_t n = 0; n < told.size(); ++n) {
+  for (std::size_t n = 0; n < dependence.size(); ++n) {
     found.indices.push_back({told[n], Measure::hsic, dependence[n].r2, nan, nan});
     if (dependence[n].chance > doubtful) idle.push_back(told[n]);
   }

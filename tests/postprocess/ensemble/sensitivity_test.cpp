@@ -188,9 +188,15 @@ TEST(Sensitivity, tells_by_hsic_what_ranks_cannot) {
   EXPECT_GT(index_of(found, "a", SensitivityMeasure::hsic), 0.2);
   EXPECT_NEAR(index_of(found, "b", SensitivityMeasure::hsic), 0, 0.02);
   EXPECT_TRUE(holds(found.note, {"no effect is told (HSIC, p > 0.05) of b"})) << found.note;
-  std::vector<double> rare(400, 0.0);
-  rare[7] = 1;
-  EXPECT_NO_THROW(sensitivity(table, rare)) << "the members that are compared may have one result";
+  for (const std::size_t apart : {399u, 80u, 7u, 2u}) {
+    std::vector<double> rare(400, 0.0);
+    for (std::size_t k = 3; k < rare.size(); k += apart) rare[k] = 1;
+    EXPECT_NO_THROW(sensitivity(table, rare)) << "members with one result, or few with another";
+  }
+  for (const std::int64_t few : {4, 5, 8, 20}) {
+    const MemberTable small = drawn(few, "sobol");
+    EXPECT_NO_THROW(sensitivity(small, small.columns[0].values)) << few;
+  }
 }
 
 TEST(Sensitivity, says_why_there_is_none_and_gives_the_swing_of_keys_that_vary_alone) {
