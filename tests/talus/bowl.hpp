@@ -82,6 +82,7 @@ struct SurveyedBowl : RunInProcess {
     return fmt::format(
         "[preprocess]\nbefore_dem = \"before.asc\"\nafter_dem = \"after.asc\"\n[preprocess.source]\n"
         "seed_m = [500045, 5000105]\n[preprocess.grid]\nlayer_height_m = 2.0\n[solve]\nend_time_s = 20.0\n"
+        "stop_kinetic_fraction = 0.001\n"
         "[solve.base]\nlaw = \"coulomb\"\nfriction_angle_deg = {:.1f}  # of the bed\n",
         friction);
   }
