@@ -227,5 +227,7 @@ int main(int argc, char** argv) {
     code = guarded(argc, argv, json);
     return std::vector<std::filesystem::path>{};
   });
-  return outcome.code == ExitCode::success ? code : report_faults("talus", outcome);
+  if (outcome.code != ExitCode::success) code = report_faults("talus", outcome);
+  if (code == static_cast<int>(ExitCode::interrupted)) fmt::print(stderr, "talus: the same command goes on\n");
+  return code;
 }

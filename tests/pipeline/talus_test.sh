@@ -191,6 +191,7 @@ test_a_signal_reaches_the_stage_and_the_next_call_goes_on() {
   expect_exit 0 preprocess
   interrupt TERM out/checkpoint.h5 "$bin/talus" run recipe.toml --out out --on cpu
   [[ -f out/checkpoint.h5 && ! -f out/run.h5 ]] || fail "no checkpoint was left"
+  expect_words 'talus: the same command goes on'
   expect_exit 0 run
   expect_words 'preprocess: domain.vdb is up to date' 'going on from out/checkpoint.h5 at t = '
 }
