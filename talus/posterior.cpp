@@ -15,7 +15,7 @@
 namespace talus::command {
 namespace {
 
-constexpr double edge = 2;              // deviations of the prior: what lies beyond is at its edge
+constexpr double edge = 1.645;          // deviations of the prior, beyond which 5 % of it lie on either side
 constexpr double large_loading = 0.35;  // of a key in a direction that is named
 
 Quantiles quantiles_of(std::vector<double> values) {
