@@ -101,7 +101,8 @@ void take(EnsembleCounts& all, EnsembleCounts&& part) {
   for (auto list : {&EnsembleCounts::failures, &EnsembleCounts::changes})
     for (MemberWords& one : part.*list) add_in_order(all.*list, std::move(one));
   for (Finding& finding : part.findings)
-    if (finding.member != Finding::no_member) all.add_finding(finding.member, std::move(finding));
+    if (const std::int64_t member = finding.member; member != Finding::no_member)
+      all.add_finding(member, std::move(finding));
 }
 
 bool same_scene(const EnsembleScene& a, const EnsembleScene& b) {

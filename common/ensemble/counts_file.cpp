@@ -95,7 +95,7 @@ std::vector<KeptThickness> read_thickness(const h5::File& file, const std::vecto
 }
 
 std::vector<CellWindow> read_member_windows(const h5::File& file, std::size_t count, const MapGrid& grid) {
-  const auto windows = h5::read_windows(file, "/members/window", count);
+  auto windows = h5::read_windows(file, "/members/window", count);
   for (std::size_t k = 0; k < count; ++k)
     if (const CellWindow& w = windows[k]; !lies_in(w, grid))
       file.refuse(fmt::format("dataset /members/window holds {} x {} cells from {}, {} at place {}", w.columns, w.rows,

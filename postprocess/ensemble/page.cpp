@@ -39,6 +39,27 @@ Json words_json(const Ensemble& ensemble, const std::vector<MemberWords>& list) 
 /// Whether members are draws of one thing, and neither slides nor single changes.
 bool is_sample(const Ensemble& ensemble) { return ensemble.table.names.empty(); }
 
+Json share_scores_json(const MemberRows& rows) {
+  auto list = Json::array();
+  for (const ShareScore& one : rows.share_scores)
+    list.push_back({{"of", one.of}, {"held", one.held}, {"csi", one.csi}, {"brier", one.brier}});
+  return list;
+}
+
+void add_warnings(const Ensemble& ensemble, Json& json) {
+  json["warnings"] = Json::array();
+  std::vector<MemberWords> of_members;
+  std::set<std::int64_t> warned;
+  for (const Finding& f : ensemble.counts.findings) {
+    if (f.severity != Severity::warning) continue;
+    if (f.member == Finding::no_member) json["warnings"].push_back(f.message);
+    if (f.member != Finding::no_member) of_members.push_back({f.member, f.message}), warned.insert(f.member);
+  }
+  json["warnings_of_members"] = words_json(ensemble, of_members);
+  json["warnings_in_all"] = of_members.size();
+  json["members_warned"] = warned.size();
+}
+
 Json run_json(const EnsemblePageInput& input) {
   const Ensemble& ensemble = input.ensemble;
   const EnsembleCounts& counts = ensemble.counts;
@@ -63,9 +84,7 @@ Json run_json(const EnsemblePageInput& input) {
   const auto rule = hazard_rule(ensemble, input.options.hazard);
   json["hazard"] = rule ? Json(hazard_words(*rule)) : Json();
   json["survey"] = input.survey ? Json(input.survey->name) : Json();
-  json["share_scores"] = Json::array();
-  for (const ShareScore& one : input.rows.share_scores)
-    json["share_scores"].push_back({{"of", one.of}, {"held", one.held}, {"csi", one.csi}, {"brier", one.brier}});
+  json["share_scores"] = share_scores_json(input.rows);
   json["slides"] = ensemble.table.slides.has_value();
   json["sampled"] = is_sample(ensemble);
   const std::vector<std::int64_t> at_edge = counts.at_edge();
@@ -74,17 +93,7 @@ Json run_json(const EnsemblePageInput& input) {
   json["elevation_error"] = fact(ensemble.table.provenance, elevation_error_of_members);
   json["accepted"] = Json::array();
   for (const Finding& f : insisted_on(ensemble)) json["accepted"].push_back({f.name, f.message});
-  json["warnings"] = Json::array();
-  std::vector<MemberWords> of_members;
-  std::set<std::int64_t> warned;
-  for (const Finding& f : counts.findings) {
-    if (f.severity != Severity::warning) continue;
-    if (f.member == Finding::no_member) json["warnings"].push_back(f.message);
-    if (f.member != Finding::no_member) of_members.push_back({f.member, f.message}), warned.insert(f.member);
-  }
-  json["warnings_of_members"] = words_json(ensemble, of_members);
-  json["warnings_in_all"] = of_members.size();
-  json["members_warned"] = warned.size();
+  add_warnings(ensemble, json);
   json["failures"] = words_json(ensemble, counts.failures);
   return json;
 }

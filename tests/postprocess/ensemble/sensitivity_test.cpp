@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "common/map/raster.hpp"
 #include "postprocess/ensemble/maps_of_ensemble.hpp"
 #include "postprocess/ensemble/member_analysis.hpp"
 #include "postprocess/ensemble/results.hpp"
 #include "tests/common/ensemble/ensemble_scene.hpp"
+#include "tests/common/scratch.hpp"
 
 namespace talus::postprocess {
 namespace {
