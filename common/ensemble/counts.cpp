@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -230,11 +229,12 @@ const char* unit_at_gauge(const std::string& name) {
   return of == std::end(gauge_numbers) ? "1" : of->unit;
 }
 
-std::vector<std::string> EnsembleCounts::names_at_gauges() const {
-  std::set<std::string> names;
-  for (const MemberResult& result : results)
-    for (const auto& [name, value] : result.at_gauges) names.insert(name);
-  return {names.begin(), names.end()};
+std::map<std::string, std::vector<double>> EnsembleCounts::at_gauges() const {
+  std::map<std::string, std::vector<double>> numbers;
+  for (std::size_t k = 0; k < results.size(); ++k)
+    for (const auto& [name, value] : results[k].at_gauges)
+      numbers.try_emplace(name, results.size(), nan).first->second[k] = value;
+  return numbers;
 }
 
 bool is_at_edge(const MemberResult& result) { return result.edge_cells > 0 || result.volume_outflow > 0; }

@@ -151,8 +151,9 @@ struct EnsembleCounts {
   /// Where a member of the part stands in the lists.
   std::size_t place_of(std::int64_t member) const { return static_cast<std::size_t>(member - part.first); }
   MemberState state_of(std::int64_t member) const { return states.at(place_of(member)); }
-  std::int64_t count(MemberState state) const;       ///< the number of members of a state
-  std::vector<std::string> names_at_gauges() const;  ///< of what members measured there
+  std::int64_t count(MemberState state) const;  ///< the number of members of a state
+  /// Each number that members measured at gauges, by its name [part.count()]; NaN where a member has none.
+  std::map<std::string, std::vector<double>> at_gauges() const;
   /// Numbers of counted members that came to the edge of their grid, or left it.
   std::vector<std::int64_t> at_edge() const;
   MapGrid grid_of(std::int64_t member) const;  ///< the grid on which a counted member's deposit is kept

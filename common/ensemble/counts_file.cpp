@@ -141,14 +141,9 @@ void write_members(h5::File& file, const EnsembleCounts& counts) {
     file.set_text(path, "unit", number.unit);
     file.set_text(path, "long_name", number.meaning);
   }
-  const std::vector<std::string> at_gauges = counts.names_at_gauges();
+  const auto at_gauges = counts.at_gauges();
   if (!at_gauges.empty()) file.make_group(gauges_group);
-  for (const std::string& name : at_gauges) {
-    std::vector<double> values;
-    for (const MemberResult& result : counts.results) {
-      const auto found = result.at_gauges.find(name);
-      values.push_back(found == result.at_gauges.end() ? nan : found->second);
-    }
+  for (const auto& [name, values] : at_gauges) {
     const std::string path = fmt::format("{}/{}", gauges_group, name);
     file.write_list<double>(path, values);
     file.set_text(path, "unit", unit_at_gauge(name));

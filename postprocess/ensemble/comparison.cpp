@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <utility>
 
 #include <fmt/ranges.h>
 
@@ -51,6 +51,30 @@ std::vector<char> cells_above(const std::vector<double>& values, double threshol
   std::vector<char> above;
   for (const double value : values) above.push_back(value > threshold ? 1 : 0);
   return above;
+}
+
+/// A number of all members, [members].
+struct NumberOfMembers {
+  const char* unit;
+  std::vector<double> values;
+};
+
+/// The result of this name. Throws DataError where no member has it.
+NumberOfMembers number_of(const EnsembleCounts& counts, const std::string& name) {
+  for (const ResultNumber& number : result_numbers) {
+    if (name != number.name) continue;
+    std::vector<double> values;
+    for (const MemberResult& result : counts.results) values.push_back(result.*(number.value));
+    return {number.unit, std::move(values)};
+  }
+  std::vector<std::string> names;
+  for (const auto& [at_gauge, values] : counts.at_gauges()) {
+    if (at_gauge == name) return {unit_at_gauge(name), values};
+    names.push_back(at_gauge);
+  }
+  throw DataError({fmt::format("[[calibrate.number]] result = \"{}\": no member has it", name),
+                   names.empty() ? "[solve] has no gauges" : fmt::format("there are {}", fmt::join(names, ", ")),
+                   "Name a [[solve.gauge]], and run talus-solve again"});
 }
 
 bool holds_any(const std::vector<char>& cells) { return std::ranges::find(cells, 1) != cells.end(); }
@@ -126,24 +150,11 @@ void Comparison::add_outline(const char* name, const std::vector<double>& covere
 }
 
 void Comparison::add_number(const CalibrateNumber& number) {
-  const auto* const of =
-      std::ranges::find_if(result_numbers, [&](const ResultNumber& one) { return number.result == one.name; });
-  const bool at_gauge = of == std::end(result_numbers);
-  if (const auto names = counts_.names_at_gauges(); at_gauge && std::ranges::find(names, number.result) == names.end())
-    throw DataError({fmt::format("[[calibrate.number]] result = \"{}\": no member has it", number.result),
-                     names.empty() ? "[solve] has no gauges" : fmt::format("there are {}", fmt::join(names, ", ")),
-                     "Name a [[solve.gauge]], and run talus-solve again"});
-  Compared compared{number.result,
-                    at_gauge ? unit_at_gauge(number.result) : of->unit,
-                    {number.value},
-                    {},
-                    {number.deviation * number.deviation},
-                    std::abs(number.value),
-                    0,
-                    0};
-  const auto simulate = [this, of, at_gauge, name = number.result](std::size_t k, const OnSurveyGrid*) {
-    const MemberResult& result = counts_.results[k];
-    return Simulated{{at_gauge ? result.at_gauges.at(name) : result.*(of->value)}, {}};
+  NumberOfMembers of = number_of(counts_, number.result);
+  Compared compared{
+      number.result, of.unit, {number.value}, {}, {number.deviation * number.deviation}, std::abs(number.value), 0, 0};
+  const auto simulate = [values = std::move(of.values)](std::size_t k, const OnSurveyGrid*) {
+    return Simulated{{values[k]}, {}};
   };
   add(std::move(compared), 0, simulate);
 }

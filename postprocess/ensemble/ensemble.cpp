@@ -377,14 +377,8 @@ MemberRows member_rows(const Ensemble& ensemble, const Options& options, const s
       column.values.push_back(counts.states[k] == MemberState::counted ? counts.results[k].*(number.value) : nan);
     rows.columns.push_back(std::move(column));
   }
-  for (const std::string& name : counts.names_at_gauges()) {
-    RowColumn column{ColumnKind::result, name, unit_at_gauge(name), name, {}, {}};
-    for (const MemberResult& result : counts.results) {
-      const auto found = result.at_gauges.find(name);
-      column.values.push_back(found == result.at_gauges.end() ? nan : found->second);
-    }
-    rows.columns.push_back(std::move(column));
-  }
+  for (const auto& [name, values] : counts.at_gauges())
+    rows.columns.push_back({ColumnKind::result, name, unit_at_gauge(name), name, values, {}});
   if (survey) add_scores(rows, ensemble, *survey, options);
   return rows;
 }

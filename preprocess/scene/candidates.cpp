@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/scene/candidates.hpp"
-#include "preprocess/regions/way_down.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include "common/map/statistics.hpp"
 #include "common/map/usual_reach.hpp"
 #include "common/stage/findings.hpp"
+#include "preprocess/regions/way_down.hpp"
 #include "preprocess/terrain/height_statistics.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 

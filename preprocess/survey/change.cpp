@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "preprocess/survey/change.hpp"
-#include "preprocess/regions/way_down.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "common/map/raster.hpp"
 #include "common/stage/findings.hpp"
+#include "preprocess/regions/way_down.hpp"
 #include "preprocess/terrain/working_grid.hpp"
 
 namespace talus::preprocess {

@@ -24,7 +24,8 @@ void expect_same_counts(const EnsembleCounts& a, const EnsembleCounts& b) {
       const double ours = a.results[k].*(number.value), theirs = b.results[k].*(number.value);
       EXPECT_TRUE(ours == theirs || (std::isnan(ours) && std::isnan(theirs))) << number.name << " of member " << k;
     }
-  EXPECT_EQ(a.names_at_gauges(), b.names_at_gauges());
+  ASSERT_EQ(a.at_gauges().size(), b.at_gauges().size());
+  for (const auto& [name, values] : a.at_gauges()) EXPECT_TRUE(b.at_gauges().contains(name)) << name;
   for (std::size_t k = 0; k < a.results.size(); ++k)
     for (const auto& [name, ours] : a.results[k].at_gauges) {
       const double theirs = b.results[k].at_gauges.at(name);
@@ -96,7 +97,8 @@ TEST_F(CountsFile, comes_back_as_it_was_written) {
   const EnsembleCounts read = read_counts(scratch / "counts.3-12.h5");
   expect_same_counts(read, counts);
   EXPECT_EQ(read.provenance, counts.provenance);
-  EXPECT_EQ(read.names_at_gauges(), std::vector<std::string>{"gauge_bridge_arrival_s"});
+  ASSERT_EQ(read.at_gauges().size(), 1u);
+  EXPECT_TRUE(read.at_gauges().contains("gauge_bridge_arrival_s"));
   EXPECT_EQ(read.scene.grid.west, counts.scene.grid.west);
   test::expect_same(read.scene, counts.scene, &EnsembleScene::title, &EnsembleScene::release_thickness);
 }
