@@ -11,11 +11,14 @@
 namespace talus {
 
 /// Keys of those numbers, in [preprocess.bed] and [solve.base] alike.
-inline constexpr std::array<std::string_view, 14> bed_numbers{
+inline constexpr std::array<std::string_view, 15> bed_numbers{
     "friction_angle_deg", "peak_coefficient",    "steady_coefficient",   "characteristic_speed_m_s",
     "turbulence_m_s2",    "bartelt_cohesion_Pa", "friction_coefficient", "minimum_shear_Pa",
     "stop_angle_deg",     "steepest_angle_deg",  "start_angle_deg",      "layer_length_m",
-    "cohesion_Pa",        "pore_pressure_ratio"};
+    "cohesion_Pa",        "pore_pressure_ratio", "water_table_depth_m"};
+/// The one of [solve.water] instead, where it is table_depth_m: depth of the water table below the surface at the
+/// start.
+inline constexpr std::string_view water_table = "water_table_depth_m";
 
 /// A number in another form: mu of an angle, mu = tan(angle) (T13), or NGI's k of Voellmy's xi, k = g / xi.
 struct BedForm {

@@ -21,6 +21,11 @@ struct RunningMaps {
   Values peak_speed{};      // largest speed of the mean motion of a column's points [m/s]
   Values peak_pressure{};   // running maximum of rho v^2 [Pa]
   Values arrival_time{};    // first time thicker than the threshold [s]; negative: not yet
+  // Of the water in the pores at the bed; empty where there is none.
+  Values peak_pore_pressure{};  // running maximum over the load on the bed [-]
+  Values effective_stress{};    // as water flowed last [Pa]
+  Values grains_share{};        // of the normal stress, as water flowed last: what friction acts on [-]
+  Values drained_time{};        // last time at which the excess was above a tenth of the load [s]
 };
 
 /// Running maps whose values are each made from the same arguments.
@@ -29,7 +34,11 @@ RunningMaps<Values> make_running_maps(const Arguments&... arguments) {
   return {.peak_thickness = Values(arguments...),
           .peak_speed = Values(arguments...),
           .peak_pressure = Values(arguments...),
-          .arrival_time = Values(arguments...)};
+          .arrival_time = Values(arguments...),
+          .peak_pore_pressure = Values(arguments...),
+          .effective_stress = Values(arguments...),
+          .grains_share = Values(arguments...),
+          .drained_time = Values(arguments...)};
 }
 
 /// The maps of a finished run as run.h5 holds them, [rows * columns] each, row 0 southernmost. Thickness is vertical
@@ -45,6 +54,10 @@ struct RunMaps {
   std::vector<double> peak_pressure_kPa;  // running maximum of rho v^2 [kPa]
   std::vector<double> arrival_time;       // [s], NaN where it never came
   std::vector<double> eroded_depth;       // of the ground that was eroded [m]; empty where nothing can be
+  // Of the water in the pores at the bed; empty where there is none.
+  std::vector<double> peak_pore_pressure;    // running maximum over the load on the bed [-]
+  std::vector<double> effective_stress_kPa;  // at the end [kPa]
+  std::vector<double> drained_time;          // last time at which the excess was above a tenth of the load [s]
   // Of a search for the factor of safety; empty in runs in time.
   std::vector<double> critical_thickness;    // of the mass that fails first [m]
   std::vector<double> failure_displacement;  // of a column's points as it fails, over the way of that mass [-]
@@ -58,10 +71,11 @@ using MapMember = std::vector<double> RunMaps::*;
 
 /// One of the RunningMaps, and the map of the finished run that it becomes.
 struct RunningMap {
-  const char* name;  ///< in checkpoints
-  double start;      ///< its value before anything moved
-  MapMember result;  ///< where it ends; negative values (not yet) become NaN there
-  double unit;       ///< SI units in one unit of the result: 1000 for kPa
+  const char* name;       ///< in checkpoints
+  double start;           ///< its value before anything moved
+  MapMember result;       ///< where it ends; negative values (not yet) become NaN there; null: nowhere
+  double unit;            ///< SI units in one unit of the result: 1000 for kPa
+  bool of_water = false;  ///< empty in runs without water in the pores
 };
 
 /// Calls visit(row, maps.member...) for every one of the RunningMaps, with the same member of all `maps`.
@@ -71,6 +85,10 @@ void for_each_running_map(Visit&& visit, Maps&&... maps) {
   visit(RunningMap{"peak_speed", 0, &RunMaps::peak_speed, 1}, maps.peak_speed...);
   visit(RunningMap{"peak_pressure", 0, &RunMaps::peak_pressure_kPa, 1000}, maps.peak_pressure...);
   visit(RunningMap{"arrival_time", -1, &RunMaps::arrival_time, 1}, maps.arrival_time...);
+  visit(RunningMap{"peak_pore_pressure", 0, &RunMaps::peak_pore_pressure, 1, true}, maps.peak_pore_pressure...);
+  visit(RunningMap{"effective_stress", 0, &RunMaps::effective_stress_kPa, 1000, true}, maps.effective_stress...);
+  visit(RunningMap{"grains_share", 1, nullptr, 1, true}, maps.grains_share...);
+  visit(RunningMap{"drained_time", -1, &RunMaps::drained_time, 1, true}, maps.drained_time...);
 }
 
 /// What the classes of a map are, and so its colours.
@@ -200,6 +218,44 @@ inline constexpr MapField map_fields[] = {
                .about = "Depth of the ground that went along, vertical.",
                .merge = MergedCells::mean,
                .ramp = Ramp::sea}},
+    {.name = "peak_pore_pressure",
+     .values = &RunMaps::peak_pore_pressure,
+     .unit = "1",
+     .meaning = "largest pore pressure at the bed over the load on it",
+     .optional = true,
+     .product = {.cell_methods = "time: maximum",
+                 .legend = "Peak pore pressure over the load [-]",
+                 .classes = MapClasses::share},
+     .layer = {.id = "pore_pressure",
+               .title = "Peak pore pressure",
+               .unit = "",
+               .about = "Largest pressure of the water at the bed over the load on it; 1: liquefied.",
+               .ramp = Ramp::sea}},
+    {.name = "effective_stress",
+     .values = &RunMaps::effective_stress_kPa,
+     .unit = "kPa",
+     .meaning = "effective normal stress on the bed at the end",
+     .optional = true,
+     .product = {.cell_methods = "area: mean",
+                 .legend = "Effective stress on the bed [kPa]",
+                 .classes = MapClasses::pressure},
+     .layer = {.id = "effective_stress",
+               .title = "Effective stress",
+               .unit = "kPa",
+               .about = "Normal stress between grains and bed at the end, without what water carries.",
+               .decimals = 1,
+               .merge = MergedCells::mean}},
+    {.name = "drained_time",
+     .values = &RunMaps::drained_time,
+     .unit = "s",
+     .meaning = "last time at which excess pore pressure carried a tenth of the load on the bed",
+     .optional = true,
+     .product = {.legend = "Drained from [s]", .classes = MapClasses::time, .zero_inside = false},
+     .layer = {.id = "drained",
+               .title = "Drained from",
+               .unit = "s",
+               .about = "Last time at which excess pore pressure carried a tenth of the load on the bed.",
+               .decimals = 1}},
     {.name = "critical_thickness",
      .values = &RunMaps::critical_thickness,
      .meaning = "thickness of the mass that fails first, vertical",

@@ -32,6 +32,7 @@ struct BaseFriction {
   const Bed<Real, Laws>* columns = nullptr;   ///< null: uniform
   Real constants[most_constants<Laws>] = {};  ///< the law's numbers of the scene, in its order
   const Real* measured = nullptr;  ///< coefficient of every column in this step, of a law that asks for the column
+  const double* borne = nullptr;  ///< share of the normal stress that grains bear, of every column; null: without water
 
   /// The law with the same numbers everywhere in another precision.
   template <class To>
@@ -51,14 +52,15 @@ struct BaseFriction {
   /// The same for a base node of a column: that of the column where it was measured (MeasureCoefficients). Laws that
   /// ask for the column are no part of the kernels that call this.
   TALUS_HD Real base_coefficient(int column, const Slip<Real>& slip) const {
-    if (measured) return measured[column];
-    return visit_law<Laws>(law, [&](auto own) {
-      if constexpr (decltype(own)::asks_column) {
-        return Real(0);
-      } else {
-        return own.coefficient(numbers(at(column)), slip);
-      }
-    });
+    const Real share = borne ? static_cast<Real>(borne[column]) : Real(1);
+    if (measured) return share * measured[column];
+    return share * visit_law<Laws>(law, [&](auto own) {
+             if constexpr (decltype(own)::asks_column) {
+               return Real(0);
+             } else {
+               return own.coefficient(numbers(at(column)), slip);
+             }
+           });
   }
   /// The law's traction that grows with speed (T13a) [Pa].
   TALUS_HD Real drag(const Bed<Real, Laws>& bed, const Slip<Real>& slip) const {
@@ -122,13 +124,6 @@ struct BedStep {
   Real leverage = Real(1);  ///< change of velocity along the bed over that across it, for impulses of one size [-]
   Real turn = {};           ///< velocity across the bed by which the ground turns in half the step (T12d) [m/s]
 };
-
-/// The normal out of ground of slopes (sx, sy).
-template <class Real>
-TALUS_HD Vec3<Real> normal_of(Real sx, Real sy) {
-  const Real scale = Real(Real(1) / sqrt(Real(1) + sx * sx + sy * sy));
-  return {-sx * scale, -sy * scale, scale};
-}
 
 /// The velocity of a column's base node after contact with ground of slopes (sx, sy), (T12) [m/s].
 template <class Real, class Laws>

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "solver/boundary/column_flow.hpp"
+#include "solver/boundary/submersion.hpp"
 #include "solver/parallel/columns.hpp"
 #include "solver/state/map_view.hpp"
 
@@ -33,6 +34,7 @@ struct SlowColumns {
   ColumnStep step;
   bool with_yield;  ///< beside drag
   ColumnDensity<Number> density;
+  Submersion<Number> submersion;
 
   /// A column of nodes as the kernel sees it; see ColumnTwice.
   struct Column {
@@ -104,8 +106,8 @@ struct SlowColumns {
     const Bed<Number>& bed = friction.at(at.nodes.column);
     const Number yield = with_yield ? friction.yield(bed, slip) : Number(0);
     pass.normal = under.normal;
-    pass.left = share_left_by_traction(slip.speed, friction.drag(bed, slip), yield,
-                                       under.area * slip.duration / pass.matter.mass);
+    const Number drag = friction.drag(bed, slip) + water_drag(at, depth, slip.speed);
+    pass.left = share_left_by_traction(slip.speed, drag, yield, under.area * slip.duration / pass.matter.mass);
     return pass;
   }
 
@@ -120,6 +122,13 @@ struct SlowColumns {
   }
 
  private:
+  /// The drag of still water on the surface of a column `depth` deep (T51) [Pa], over which moves what goes along.
+  TALUS_HD Number water_drag(const Column& at, Number depth, Number speed) const {
+    if (!submersion.on()) return Number(0);
+    const Number surface = static_cast<Number>(grid.terrain[at.nodes.column]) + depth, layer = grid.layer_height;
+    const Number below = submersion.share(surface, layer);
+    return submersion.drag * below * speed * speed / submersion.inertia(below);
+  }
   TALUS_HD static Vec3<Number> change_of(const Pass& pass, const Vec3<Number>& v) {
     return (v - pass.normal * dot(v, pass.normal)) * (pass.left - Number(1));
   }
@@ -139,9 +148,15 @@ struct StepColumns {
 template <class Number, class Device>
 class ColumnTraction {
  public:
-  /// The constructor takes the bed's friction, and the map's size; without tractions nothing is stored.
-  ColumnTraction(const Device& device, const BaseFriction<Number>& friction, int map_columns, int map_rows)
-      : acts_(friction.has_traction()), mass_(device), rise_(device), coefficient_(device) {
+  /// The constructor takes the bed's friction, the map's size, and still water, which drags; without tractions nothing
+  /// is stored.
+  ColumnTraction(const Device& device, const BaseFriction<Number>& friction, int map_columns, int map_rows,
+                 const Submersion<Number>& submersion = {})
+      : acts_(friction.has_traction() || submersion.on()),
+        submersion_(submersion),
+        mass_(device),
+        rise_(device),
+        coefficient_(device) {
     if (!acts_ && !friction.asks_column()) return;
     const std::size_t count = static_cast<std::size_t>(map_columns) * static_cast<std::size_t>(map_rows);
     for (auto* numbers : {&mass_, &rise_}) numbers->resize_zeroed(count);
@@ -187,13 +202,14 @@ class ColumnTraction {
   template <class Real, class Nodes>
   void slow(const Device& device, const StepColumns<Real, Nodes>& at, const BaseFriction<Number>& bed, bool with_yield,
             const ColumnDensity<Number>& density) {
-    for_each_column_twice<block_columns>(
-        device, at.blocks,
-        SlowColumns<Real, Nodes>{at.grid, at.active, at.nodes, bed, columns(), at.step, with_yield, density});
+    for_each_column_twice<block_columns>(device, at.blocks,
+                                         SlowColumns<Real, Nodes>{at.grid, at.active, at.nodes, bed, columns(), at.step,
+                                                                  with_yield, density, submersion_});
   }
 
  private:
   bool acts_;
+  Submersion<Number> submersion_;
   Buffer<Number, Device> mass_;
   Buffer<Number, Device> rise_;
   Buffer<Number, Device> coefficient_;

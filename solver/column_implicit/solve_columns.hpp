@@ -197,11 +197,13 @@ struct SolveColumns {
       if (node.w > Real(0)) {
         const Real up = above.across > Real(0) ? at.inertia * f.w : Real(0), both = up + at.inertia * next.force.w;
         const Real share_across = up * above.across, share_along = softer * up * above.along;
-        Vec3<Real> impulse = (Vec3<Real>{f.x, f.y, f.z} + g * node.w) * at.dt;
+        const Real below = boundary.submersion.share(boundary.grid, at.column, k);
+        const Real inertia = node.w * boundary.submersion.inertia(below);
+        Vec3<Real> impulse = (Vec3<Real>{f.x, f.y, f.z} + g * (node.w * boundary.submersion.weight(below))) * at.dt;
         if (damping > Real(0)) impulse = damped(impulse, {node.x, node.y, node.z}, damping);
         if (up > Real(0)) impulse += Parts(handed, at.normal).times(at.normal, share_across, share_along);
-        own = {Real(1) / (node.w + both - share_across * up),
-               Real(1) / (node.w + softer * both - share_along * softer * up)};
+        own = {Real(1) / (inertia + both - share_across * up),
+               Real(1) / (inertia + softer * both - share_along * softer * up)};
         forces[n] = {f.w, impulse.x, impulse.y, impulse.z};
         handed = impulse;
       }

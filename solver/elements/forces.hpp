@@ -87,9 +87,8 @@ struct StressAt {
     const auto way_ahead = [&] { return displacement_gradient(grid, g, ahead); };
     const HeadedGradient<Real, decltype(way_ahead)> gradient{displacement_gradient(grid, g, u), ahead != nullptr,
                                                              way_ahead};
-    const Mat3<Real> stress =
-        nominal_stress(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant), gradient,
-                       duration, tangents.on() ? &tangent : nullptr, means.at_point(p));
+    const Mat3<Real> stress = nominal_stress(materials.of(points, p), state_of(points, p, dilatant), gradient, duration,
+                                             tangents.on() ? &tangent : nullptr, means.at_point(p));
     if (tangents.on() && definite) make_definite(tangent);
     if (tangents.on()) tangents.put(p, tangent);
     return stress;

@@ -59,9 +59,8 @@ struct MeasureMeans {
     for (int s = elements.starts[e]; s < elements.starts[e + 1]; ++s) {
       const int p = elements.order[s];
       const PointGradients<Real, Shape> g(grid, points, p);
-      const VolumeResponse<Real> r =
-          volume_response(materials.of(points.material, points.plastic_shear, p), state_of(points, p, dilatant),
-                          displacement_gradient(grid, g, u), duration, increment[e]);
+      const VolumeResponse<Real> r = volume_response(materials.of(points, p), state_of(points, p, dilatant),
+                                                     displacement_gradient(grid, g, u), duration, increment[e]);
       mean += points.volume[p] * r.stress;
       bulk += points.volume[p] * r.bulk;
     }

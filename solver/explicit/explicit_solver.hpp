@@ -71,7 +71,10 @@ struct UpdateColumns {
     if constexpr (content == NodeContent::impulse) v.free += g * at.dt;
     if constexpr (content == NodeContent::force) {
       const Vec4<Real> f = forces[n];
-      Vec3<Real> pull = Vec3<Real>{f.x, f.y, f.z} * (Real(1) / node.w) + g;
+      const Real below = boundary.submersion.share(boundary.grid, at.column, k);
+      const Real inertia = node.w * boundary.submersion.inertia(below);
+      Vec3<Real> pull =
+          (Vec3<Real>{f.x, f.y, f.z} + g * (node.w * boundary.submersion.weight(below))) * (Real(1) / inertia);
       undamped += pull * at.dt;
       if (damping > Real(0)) pull = damped(pull, v.before, damping);
       v.free += pull * at.dt;
@@ -111,7 +114,8 @@ class ExplicitSolver final : public BatchSolver<Real, Device, Shape, true> {
  private:
   /// Whether momentum and internal forces are scattered apart.
   bool forces_apart() const {
-    return settings_.remaps_velocity() || settings_.decay_time > 0 || settings_.damping > 0 || settings_.energy_budget;
+    return settings_.remaps_velocity() || settings_.decay_time > 0 || settings_.damping > 0 ||
+           settings_.energy_budget || settings_.submersion.on();
   }
 
   void resize_nodes(std::size_t count) override {

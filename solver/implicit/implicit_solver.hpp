@@ -25,7 +25,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
                  const ImplicitControls& controls, const SolverState& state)
       : Base(device, scene, settings, state, needs(settings), {.columns = 0, .layers = 0}),
         controls_(with_materials(controls, scene.grid.layer_height)),
-        step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed)),
+        step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed, maps_.view().grains_share)),
         length_(controls.step, controls.newton_iterations) {
     this->fit(0);
   }
@@ -42,6 +42,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     if (loads_.jump_at(clock.time)) clock.accelerated = 0;
     fit_grid(clock.time);
     record_points();
+    let_water_flow(clock);
     BatchReport report;
     const double step = solve_step(clock, report.stats);
     if (!(step > 0)) {
@@ -159,6 +160,20 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
       if (cut >= controls_.step_cuts) refuse_step(clock, step, stats, controls_.dynamic);
       step = length_.refuse(step, found.motion);
     }
+  }
+
+  /// The method lets water flow as long as the step before has taken, under all of gravity: statics that load it in one
+  /// step would begin without any.
+  void let_water_flow(Clock& clock) {
+    if (!this->water_.on()) return;
+    clock.flow_water();
+    clock_.write(clock);
+    clock_.hand_over();
+    // The first time tells the points what they bear, the second one the bed.
+    for (int n = clock.step == 0 ? 2 : 1; n > 0; --n)
+      this->flow_water({.full = this->gravity().full}, loads_.upload(clock.time, clock.time), nullptr);
+    clock.water.is_due = 0;
+    clock_.write(clock);
   }
 
   void accept(const Clock& clock, double step) {

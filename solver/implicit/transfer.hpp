@@ -146,7 +146,7 @@ struct AcceptStep {
     if (!part.deforms) return;
     const Mat3<Real> gradient = displacement_gradient(grid, g, strain_displacement);
     MaterialState<Real> state = state_of(points, p, dilatant);
-    const Material<Real, Laws> material = materials.of(points.material, points.plastic_shear, p);
+    const Material<Real, Laws> material = materials.of(points, p);
     advance_material(material, gradient, Real(clock->step_size), state, means.at_point(p));
     if (points.plastic_shear) points.plastic_shear[p] += state.plastic_shear;
     points.set_elastic(p, state.elastic);

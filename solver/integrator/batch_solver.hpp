@@ -56,7 +56,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   BatchSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
       : Base(device, scene, settings, state, needs(settings), drift_between_sorts<Device>(settings.deterministic)),
         recording_(device),
-        columns_(device, surroundings_.bed(), settings, scene.grid) {}
+        columns_(device, surroundings_.bed(), settings, scene.grid, this->submersion()) {}
 
   /// The method makes a batch of steps on the device, or one step on a CPU; see Solver::advance().
   BatchReport advance() override {
@@ -167,6 +167,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   template <class Inertia, class UpdateNodes>
   void update(Vec4<Real>* changes, const Inertia& inertia, const UpdateNodes& update_nodes) {
     const StepNodes<Real> at = step_nodes(changes);
+    this->flow_water(this->gravity(), loads_now_, nodes_.data());
     this->measure_columns();
     this->sum_motion(clock_.data());
     columns_.measure(at, surroundings_.bed());
@@ -185,12 +186,10 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   /// The surroundings of the columns as the nodes' kernels see them, which hold columns where they count no losses;
   /// `changes` as for update().
   ColumnBoundary<Real> boundary(Vec4<Real>* changes) {
-    const Vec3<double> full = settings_.gravity_vector();
     return {.grid = grid_.view(),
             .active = grid_.active_list(),
             .clock = clock_.data(),
-            .gravity = {{static_cast<Real>(full.x), static_cast<Real>(full.y), static_cast<Real>(full.z)},
-                        settings_.gravity_ramp},
+            .gravity = this->gravity(),
             .walls = walls_,
             .friction = columns_.seen_by(surroundings_.bed()),
             .full_base = static_cast<Real>(this->full_base()),
@@ -199,6 +198,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
             .density = this->column_density(),
             .maps = maps_.view(),
             .motion = motion_.sums(),
+            .submersion = this->submersion(),
             .nodes = {nodes_.data(), changes},
             .holds = !settings_.energy_budget && grid_.view().mapping == Mapping::terrain_following};
   }

@@ -9,6 +9,7 @@
 #include "solver/boundary/bed_hold.hpp"
 #include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/contact_impulses.hpp"
+#include "solver/boundary/submersion.hpp"
 #include "solver/boundary/walls.hpp"
 
 namespace talus {
@@ -149,6 +150,7 @@ struct ColumnBoundary {
   ColumnDensity<Real> density;  ///< of the mass
   MapView maps;
   Vec4<Real>* motion;  ///< see record_motion()
+  Submersion<Real> submersion;
   solver::PackedNodes<Real> nodes = {};
   bool holds = false;  ///< finish() holds columns that would leave the ground for a low hop (T12c)
 

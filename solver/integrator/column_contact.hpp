@@ -19,10 +19,10 @@ using StepNodes = StepColumns<Real, PackedNodes<Real>>;
 template <class Real, class Device>
 class ColumnContact {
  public:
-  /// The constructor takes the bed's friction, what the recipe asks for, and the grid.
+  /// The constructor takes the bed's friction, what the recipe asks for, the grid, and still water.
   ColumnContact(const Device& device, const BaseFriction<Real>& bed, const IntegratorSettings& settings,
-                const GridShape& grid)
-      : device_(device), traction_(device, bed, grid.columns, grid.rows), pressed_(device) {
+                const GridShape& grid, const Submersion<Real>& submersion)
+      : device_(device), traction_(device, bed, grid.columns, grid.rows, submersion), pressed_(device) {
     if (settings.energy_budget)
       pressed_.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
   }

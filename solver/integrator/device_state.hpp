@@ -21,10 +21,12 @@ namespace talus::solver {
 template <class Number, class Device>
 class DeviceBed {
  public:
-  /// The constructor takes the law with the numbers that hold everywhere, and those of every column in their place
-  /// where there are any, [rows * columns].
-  DeviceBed(const Device& device, const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns)
+  /// The constructor takes the law with the numbers that hold everywhere, those of every column in their place where
+  /// there are any, and what water leaves the grains of the normal stress (BaseFriction::borne), [rows * columns].
+  DeviceBed(const Device& device, const BaseFriction<double>& friction, const std::vector<Bed<double>>& columns,
+            const double* borne = nullptr)
       : friction_(friction.as<Number>()), columns_(device) {
+    friction_.borne = borne;
     if (columns.empty()) return;
     std::vector<Bed<Number>> beds;
     beds.reserve(columns.size());
@@ -125,11 +127,11 @@ class Surroundings {
   using Contact = SurfaceContact<Real, Device, Shape>;    ///< the surfaces between the nodes
   using Impulses = ContactImpulses<Real, Device, Shape>;  ///< what they give in velocities
 
-  /// The constructor takes bed, walls and contact points of a scene, whose lowest ground is at `datum` [m], and what
-  /// the contact points gave before.
+  /// The constructor takes bed, walls and contact points of a scene, whose lowest ground is at `datum` [m], what the
+  /// contact points gave before, and what grains bear at the bed (BaseFriction::borne).
   Surroundings(const Device& device, const Scene& scene, const IntegratorSettings& settings, const ContactState& state,
-               double datum)
-      : bed_(device, settings.bed, scene.bed),
+               double datum, const double* borne = nullptr)
+      : bed_(device, settings.bed, scene.bed, borne),
         walls_(settings.walls),
         frame_{{scene.map.x(0), scene.map.y(0), datum},
                {scene.grid.spacing, scene.grid.spacing, scene.grid.layer_height}},

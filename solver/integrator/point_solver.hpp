@@ -10,6 +10,7 @@
 #include "solver/integrator/device_state.hpp"
 #include "solver/integrator/particle_measures.hpp"
 #include "solver/parallel/recording.hpp"
+#include "solver/water/water_columns.hpp"
 
 namespace talus::solver {
 
@@ -25,11 +26,14 @@ class PointSolver : public Solver {
         dilatant_(needs.plastic_volume),
         points_(device, needs),
         grid_(device, scene.grid, drift, settings.deterministic, Shape::width == 2),
-        surroundings_(device, scene, settings, state.contacts, grid_.ground().datum),
+        water_(device, settings.water,
+               {scene.water_table, settings.water_ratio, static_cast<double>(materials_.list[0].density)},
+               needs.accelerations),
+        maps_(device, state.maps, settings.map_threshold.value_or(covering_thickness({}))),
+        surroundings_(device, scene, settings, state.contacts, grid_.ground().datum, maps_.view().grains_share),
         clock_(device, clock_of(state, settings)),
         loads_(device, settings.loads, scene.load_volumes),
         shaking_(device, scene.shaking),
-        maps_(device, state.maps, settings.map_threshold.value_or(covering_thickness({}))),
         measures_(device, scene.grid),
         measuring_(device),
         motion_(device) {
@@ -80,6 +84,7 @@ class PointSolver : public Solver {
                         {"grid", grid_.bytes() + surroundings_.bed_bytes()},
                         {"maps and records", maps_.bytes() + measures_.bytes() + motion_.bytes() + shaking_.bytes()}};
     if (const std::size_t sorting = sort_space_bytes(device_); sorting > 0) shares.emplace_back("sorting", sorting);
+    if (water_.on()) shares.emplace_back("water", water_.bytes());
     if (surroundings_.contact().on()) shares.emplace_back("contact points", surroundings_.contact_bytes());
     return shares;
   }
@@ -88,6 +93,19 @@ class PointSolver : public Solver {
   /// Measures the volumes over the columns for the maps, where densities differ and mass does not give the thickness.
   void measure_columns() {
     if (settings_.materials.densities_differ) measures_.measure_columns(points_.view(), grid_.groups());
+  }
+
+  /// The still water of the scene, its level over the datum of the ground.
+  Submersion<Real> submersion() const {
+    Submersion<double> water = settings_.submersion;
+    water.level -= grid_.ground().datum;
+    return water.as<Real>();
+  }
+  /// The gravity of the scene.
+  Gravity<Real> gravity() const { return {narrow<Real>(settings_.gravity_vector()), settings_.gravity_ramp}; }
+  /// The method lets water flow between the grains where the clock says so. For the others see WaterColumns::flow().
+  void flow_water(const Gravity<Real>& gravity, const Vec3<double>* loads, const Vec4<Real>* nodes) {
+    water_.flow(points_.view(), materials_, grid_, {clock_.data(), gravity, loads, nodes, submersion(), maps_.view()});
   }
 
   /// The density of what lies over each column, as it was measured last.
@@ -110,6 +128,7 @@ class PointSolver : public Solver {
     measuring_.forget();
     measured_ = false;
     grid_.fit(points_, outflow_count);
+    water_.resize(static_cast<std::size_t>(grid_.nodes()));
     surroundings_.contact().fit(grid_);
   }
   /// The mass of a full layer over a square metre [kg/m2].
@@ -147,11 +166,12 @@ class PointSolver : public Solver {
   bool dilatant_;  ///< plastic flow changes the volume
   Particles<Real, Device> points_;
   SparseGrid<Real, Device> grid_;
+  WaterColumns<Real, Device, Shape> water_;
+  DeviceMaps<Device> maps_;
   Surroundings<Real, Device, Shape> surroundings_;
   DeviceClock<Device> clock_;
   DeviceLoads<Device> loads_;
   DeviceShaking<Device> shaking_;
-  DeviceMaps<Device> maps_;
   ParticleMeasures<Real, Device, Shape> measures_;
   Recording<Device> measuring_;  ///< of a record's measures
   bool measured_ = false;        ///< energies and packing are known for the points as they are

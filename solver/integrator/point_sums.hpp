@@ -53,10 +53,9 @@ struct MeasureEnergies {
     const double z = height(p);
     const double speed = sqrt(vx * vx + vy * vy + vz * vz);
     const bool moves = speed > moving_faster_than;
-    return {
-        {0.5 * mass * (vx * vx + vy * vy + vz * vz), -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
-         volume * static_cast<double>(elastic_energy(materials.of(points.material, points.plastic_shear, p), state)),
-         volume, mass * vx, mass * vy, mass * vz, moves ? volume : 0, moves ? volume * speed : 0}};
+    return {{0.5 * mass * (vx * vx + vy * vy + vz * vz), -mass * (gravity.x * x + gravity.y * y + gravity.z * z),
+             volume * static_cast<double>(elastic_energy(materials.of(points, p), state)), volume, mass * vx, mass * vy,
+             mass * vz, moves ? volume : 0, moves ? volume * speed : 0}};
   }
 
  private:

@@ -106,6 +106,7 @@ struct Scene {
   ParticleState points;
   std::vector<double> load_volumes;  ///< volume of the points each load pulls at [m3]
   std::vector<Bed<double>> bed;      ///< of every column; empty where it is the same everywhere
+  std::vector<float> water_table;  ///< its depth at the start, normal to the bed, of every column; empty: no water [m]
   ContactPoints contacts;
   Shaking shaking;                         ///< of the ground
   Inflow inflow;                           ///< what enters over time

@@ -5,9 +5,11 @@
 // the options, once.
 #pragma once
 
+#include <optional>
 #include <type_traits>
 #include <vector>
 
+#include "solver/boundary/submersion.hpp"
 #include "solver/boundary/walls.hpp"
 #include "solver/material/material.hpp"
 #include "solver/options/implicit.hpp"
@@ -15,6 +17,7 @@
 #include "solver/options/output.hpp"
 #include "solver/options/scheme.hpp"
 #include "solver/state/particles.hpp"
+#include "solver/water/pore_water.hpp"
 
 namespace talus::solver {
 
@@ -44,6 +47,9 @@ struct IntegratorSettings : SchemeOptions, GravityOptions, OutputOptions {
   BaseFriction<double> bed = {};  ///< where the scene has no numbers of its own for a column
   std::vector<PlaneWall> walls = {};
   std::vector<LoadOptions> loads = {};
+  Submersion<double> submersion = {};  ///< its level is an elevation
+  std::optional<PoreWater<double>> water = {};
+  double water_ratio = -1;  ///< of the pressure to the load at the start; negative: hydrostatic
 };
 
 /// How implicit steps are taken.

@@ -67,6 +67,28 @@ TALUS_HD Material<Real, Laws> softened(Material<Real, Laws> m, Real plastic_shea
   return m;
 }
 
+/// Leaves a material this share of its strength by friction (T50g).
+template <class Real, class Laws>
+TALUS_HD void bear(Material<Real, Laws>& m, Real share) {
+  m.change_law([&](auto, auto& numbers) {
+    if constexpr (requires { numbers.bear(share); }) numbers.bear(share);
+  });
+}
+
+/// This function takes in water of this share of the volume: a stretch across the bed without stress, which is not
+/// elastic (T50h). `normal`: of the bed.
+template <class Real>
+TALUS_HD void take_water(MaterialState<Real>& s, const Vec3<Real>& normal, Real share) {
+  const Vec3<Real> n = normal * share;
+  s.elastic.xx -= n.x * normal.x;
+  s.elastic.yy -= n.y * normal.y;
+  s.elastic.zz -= n.z * normal.z;
+  s.elastic.xy -= n.x * normal.y;
+  s.elastic.yz -= n.y * normal.z;
+  s.elastic.xz -= n.x * normal.z;
+  s.plastic_log_volume += share;
+}
+
 /// Prepares a material for implicit steps: the pressure over which the tip of a cone is rounded [Pa] (T15b).
 template <class Real, class Laws>
 void prepare_for_newton(Material<Real, Laws>& m, Real apex) {
@@ -84,6 +106,13 @@ struct Materials {
   TALUS_HD Material<Real, Laws> of(const int* which, const Real* plastic_shear, int p) const {
     const Material<Real, Laws>& m = which ? list[which[p]] : list[0];
     return plastic_shear ? softened(m, plastic_shear[p]) : m;
+  }
+  /// The same, where water bears a part of the load.
+  template <class Points>
+  TALUS_HD Material<Real, Laws> of(const Points& points, int p) const {
+    Material<Real, Laws> m = of(points.material, points.plastic_shear, p);
+    if (points.strength_share) bear(m, points.strength_share[p]);
+    return m;
   }
   /// The density of point p [kg/m3].
   TALUS_HD Real density(const int* which, int p) const { return which ? list[which[p]].density : list[0].density; }

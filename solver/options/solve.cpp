@@ -127,6 +127,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   recipe::table(v, "shaking", shaking, "the ground shakes: an accelerogram as body force", *this);
   MassOptions::describe(v);
   recipe::table(v, "base", base, "the bed under it");
+  recipe::table(v, "water", water, "the water between the grains", *this);
   base.settle(gravity_size() > 0 ? gravity_size() : 1);
   need_columns(v, *this);
   v.needs(!accuracy || !cfl,

@@ -13,6 +13,7 @@
 #include "solver/options/material.hpp"
 #include "solver/options/output.hpp"
 #include "solver/options/scheme.hpp"
+#include "solver/options/water.hpp"
 
 namespace talus::solver {
 
@@ -36,6 +37,7 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   std::vector<InflowOptions> inflows;
   ShakingOptions shaking;
   BaseOptions base;
+  WaterOptions water;
 
   /// The integrator that the recipe asks for, by its name or by a preset.
   Integrator asked_integrator() const {

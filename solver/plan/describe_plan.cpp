@@ -122,6 +122,8 @@ std::vector<std::string> features(const Plan& plan) {
   add("material", o.material.words());
   for (const PartOptions& part : o.parts) add("  " + part.release, part.material.words());
   add("bed", o.base.words());
+  if (o.water.flows()) add("water", o.water.words(o.material.density));
+  if (o.water.level) add("still water", fmt::format("up to {:g} m", *o.water.level));
   for (const auto& [name, raster] : domain.bed) add("", name + " from a raster");
   if (domain.erodible > 0)
     add("erodible", fmt::format("{} of {} releases lie in the ground until they are taken along", domain.erodible,

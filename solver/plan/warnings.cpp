@@ -153,6 +153,19 @@ void warn_of_shaking(const Shaking& shaking, const SolveOptions& o) {
          {{"final_velocity", last, "m s-1"}, {"largest_velocity", most, "m s-1"}});
 }
 
+/// Warns of a mass on ground below the level of the sea, which the recipe takes for dry land.
+void warn_of_sea(const Domain& domain, const SolveOptions& o) {
+  if (domain.grid.crs_wkt.empty() || o.water.level) return;
+  double lowest = 0;
+  for (const double z : domain.terrain.values) lowest = std::isfinite(z) ? std::min(lowest, z) : lowest;
+  if (lowest < -1)
+    warn("below-sea-level",
+         fmt::format("The ground lies down to {:.4g} m below an elevation of 0. Where that is under water, the mass "
+                     "weighs less and is dragged: give [solve.water] level_m = 0, or leave it where the land is dry",
+                     -lowest),
+         {{"lowest", lowest, "m"}});
+}
+
 /// Warns of numbers that belong to other laws than the one that a table chooses.
 void warn_of_idle_keys(const std::vector<std::string>& idle, const std::string& table, const std::string& law) {
   if (idle.empty()) return;
@@ -177,6 +190,7 @@ void warn_of_plan(const Plan& plan) {
     warn_of_idle_keys_of(part.material, table);
   }
   warn_of_lone_columns(domain, options);
+  warn_of_sea(domain, options);
   warn_of_inflows(plan.scene, options);
   warn_of_shaking(plan.scene.shaking, options);
   warn_of_unkept_accuracy(domain, plan.asked, plan.bound.line);

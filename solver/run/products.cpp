@@ -157,6 +157,7 @@ RunMaps final_maps(const RunEnd& end, std::vector<double> thickness) {
   maps.deposit_thickness = std::move(thickness);
   for_each_running_map(
       [&](const RunningMap& map, const std::vector<double>& kept) {
+        if (map.result == nullptr) return;
         for (const double value : kept)
           (maps.*(map.result)).push_back(value < 0 ? std::numeric_limits<double>::quiet_NaN() : value / map.unit);
       },

@@ -96,10 +96,24 @@ std::vector<Bed<double>> make_bed(const Domain& domain, const SolveOptions& opti
   return bed;
 }
 
+/// The depth of the water table at the start, normal to the bed, of every column [m]: of a raster of the domain, the
+/// recipe's elsewhere.
+std::vector<float> make_water_table(const Domain& domain, const SolveOptions& options, const TerrainTables& terrain) {
+  if (!options.water.flows()) return {};
+  std::vector<float> table(domain.grid.count());
+  const auto given = std::ranges::find(domain.bed, water_table, [](const auto& named) { return named.first; });
+  for (std::size_t n = 0; n < table.size(); ++n) {
+    const double value = given == domain.bed.end() ? options.water.table_depth : given->second.values[n];
+    const double depth = std::isfinite(value) ? value : options.water.table_depth;
+    table[n] = static_cast<float>(depth / std::hypot(1.0, terrain.slope_x[n], terrain.slope_y[n]));
+  }
+  return table;
+}
+
 /// Refuses rasters that the law does not look at, which are a mistake in the recipe.
 void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fault>& faults) {
   for (const auto& [name, raster] : domain.bed) {
-    if (options.base.takes(name)) continue;
+    if (options.base.takes(name) || (name == water_table && options.water.flows())) continue;
     faults.push_back({fmt::format("[preprocess.bed] {} is given, but [solve.base] law does not use it", name),
                       "the raster would have no effect",
                       "Name the law that does, or leave the raster out and run talus-preprocess again"});
@@ -238,6 +252,7 @@ Scene finish_scene(const Domain& domain, const SolveOptions& options, Scene scen
   check_bed(domain, options, faults);
   if (!faults.empty()) throw RecipeError(std::move(faults));
   scene.bed = make_bed(domain, options);
+  scene.water_table = make_water_table(domain, options, scene.terrain);
   scene.contacts = make_contact_points(domain.grid, scene.grid, scene.terrain, make_obstacles(options.obstacles));
   log_detail(fmt::format("scene: {} points placed", scene.points.size()));
   return scene;

@@ -18,10 +18,15 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings, 
   SolverState state;
   state.points = std::move(points);
   const auto cells = scene.map.count();
-  for_each_running_map([&](const RunningMap& map, auto& values) { values.assign(cells, map.start); }, state.maps);
+  for_each_running_map(
+      [&](const RunningMap& map, auto& values) {
+        if (!map.of_water || settings.water) values.assign(cells, map.start);
+      },
+      state.maps);
   state.clock.control.courant = settings.cfl.value_or(default_cfl);
   state.clock.control.longest = settings.largest_step;
   state.clock.motion_maps.column_spacing = scene.grid.spacing;
+  if (settings.water) state.clock.water.steps_between = steps_between_flows;
   state.clock.budget.is_kept = settings.energy_budget ? 1 : 0;
   const auto rate =
       static_cast<float>(first_rate(scene.grid, scene.terrain, state.points,

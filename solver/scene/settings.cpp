@@ -28,14 +28,16 @@ double transfer_time_of(const SolveOptions& o, const GridShape& grid) {
 }
 
 ParticleNeeds needs_of(const SolveOptions& o) {
+  const bool wet = o.water.flows();
   return {.affine_transfer = o.affine(),
-          .plastic_volume = o.any_material([](const MaterialOptions& m) { return m.dilates(); }),
+          .plastic_volume = wet || o.any_material([](const MaterialOptions& m) { return m.dilates(); }),
           .boxes = o.shape == ShapeKind::gimp,
           .loads = !o.loads.empty(),
           .spreads = o.shape == ShapeKind::quadratic && abilities_of(o.integrator).carry_inertia &&
                      o.any_material([](const MaterialOptions& m) { return !m.holds_tension(); }),
           .several_materials = !o.parts.empty(),
-          .softening = o.any_material([](const MaterialOptions& m) { return m.softens(); })};
+          .softening = wet || o.any_material([](const MaterialOptions& m) { return m.softens(); }),
+          .water = wet};
 }
 
 PlaneWall make_wall(const WallOptions& o) {
@@ -61,6 +63,9 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   s.bed = make_base_friction<double>(o);
   std::transform(o.walls.begin(), o.walls.end(), std::back_inserter(s.walls), make_wall);
   s.loads = o.loads;
+  s.submersion = make_submersion(o);
+  s.water = make_water(o);
+  s.water_ratio = o.water.pressure_ratio.value_or(-1);
   return s;
 }
 
@@ -87,7 +92,8 @@ SolverSettings for_gravity_loading(SolverSettings s, int steps) {
   s.common.gravity_ramp = 1;
   hold(s.common.materials.in_double);
   hold(s.common.materials.in_single);
-  s.common.needs.plastic_volume = s.common.needs.softening = s.common.needs.spreads = false;
+  s.common.needs.plastic_volume = s.common.needs.softening = s.common.needs.spreads = s.common.needs.water = false;
+  s.common.water.reset();
   s.common.bed = {};
   s.common.bed.law = FrictionLaw::stick;
   for (PlaneWall& wall : s.common.walls) wall.to = 2;

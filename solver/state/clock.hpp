@@ -81,6 +81,15 @@ struct MotionMapPolicy {
   int is_due = 0;                                ///< read by kernels: the state before this step goes into the maps
 };
 
+/// Intervals at which water flows between the grains (T50): it goes slowly beside waves.
+struct WaterPolicy {
+  int steps_between = 0;  ///< 0: there is no water
+  int is_due = 0;         ///< read by kernels: water flows in this step
+  double last = 0;        ///< time at which it flowed last [s]
+  double duration = 0;    ///< for which it flows now [s]
+};
+inline constexpr int steps_between_flows = 4;
+
 /// Motion of the ground (T42).
 struct GroundMotion {
   double acceleration[3] = {0, 0, 0};  ///< mean over the step [m/s2]
@@ -100,6 +109,7 @@ struct Clock {
   SortPolicy sorting;
   Outflow outflow;
   MotionMapPolicy motion_maps;
+  WaterPolicy water;
   GroundMotion shaking;
   EnergyBudget budget;
 
@@ -133,10 +143,12 @@ struct Clock {
   /// The method opens the next step: it settles its size (T11), or halts. One thread.
   TALUS_HD void begin_step() {
     motion_maps.is_due = 0;
+    water.is_due = 0;
     halt_where_due();
     if (alarms.halt != running) return;
     if (motion_maps.path_unrecorded >= way_between_records || motion_maps.steps_unrecorded >= steps_between_records)
       record_motion();
+    if (water.steps_between > 0 && step % water.steps_between == 0) flow_water();
     const double longest = full_step(), remaining = next_event - time;
     if (longest >= remaining) {
       step_size = remaining;
@@ -169,6 +181,13 @@ struct Clock {
   /// The acceleration of the ground in the step [m/s2].
   TALUS_HD Vec3<double> ground_acceleration() const {
     return {shaking.acceleration[0], shaking.acceleration[1], shaking.acceleration[2]};
+  }
+
+  /// The method lets water flow for the time since it flowed last.
+  TALUS_HD void flow_water() {
+    water.is_due = 1;
+    water.duration = time - water.last;
+    water.last = time;
   }
 
   /// The method lets kernels record the maps of speed and pressure from the points as they are.

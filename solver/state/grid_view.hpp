@@ -23,6 +23,13 @@ inline constexpr int block_columns = block_side * block_side;  // columns of a b
 /// The number of blocks beside one another that hold `columns` columns.
 inline constexpr int blocks_across(int columns) { return (columns + block_side - 1) / block_side; }
 
+/// The normal out of ground of slopes (sx, sy).
+template <class Real>
+TALUS_HD Vec3<Real> normal_of(Real sx, Real sy) {
+  const Real scale = Real(Real(1) / sqrt(Real(1) + sx * sx + sy * sy));
+  return {-sx * scale, -sy * scale, scale};
+}
+
 /// The vertical coordinate of the grid: above the terrain, or above the datum.
 enum class Mapping { terrain_following, cartesian };
 

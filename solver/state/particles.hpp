@@ -24,7 +24,8 @@ struct ParticleNeeds {
   bool loads = false;
   bool spreads = false;  ///< mass may be drawn out so far that its points are split
   bool several_materials = false;
-  bool softening = false;  ///< some material softens
+  bool softening = false;  ///< the plastic shear strain counts: some material softens, or water takes notice of it
+  bool water = false;      ///< water flows between the grains
   bool always = true;      ///< last, so that no list of values switches it off by position
 };
 
@@ -73,7 +74,15 @@ enum class Kept {
   /* which material a point is of */                                                               \
   FIELD(material,           Ints,  1, "1",     several_materials, in_frames,     0)                \
   /* equivalent plastic shear strain so far */                                                     \
-  FIELD(plastic_shear,      Reals, 1, "1",     softening,         in_frames,     0)
+  FIELD(plastic_shear,      Reals, 1, "1",     softening,         in_frames,     0)                \
+  /* across the bed, borne by the grains; negative: pore_water.hpp */                              \
+  FIELD(effective_stress,   Reals, 1, "Pa",    water,             in_frames,     -2)               \
+  /* of the strength by friction, that pressure and dilatancy leave */                             \
+  FIELD(strength_share,     Reals, 1, "1",     water,             in_frames,     1)                \
+  /* rate at which water adds to ln(volume) */                                                     \
+  FIELD(water_inflow,       Reals, 1, "1/s",   water,             in_checkpoint, 0)                \
+  /* plastic_shear at the last step with water */                                                  \
+  FIELD(shear_seen,         Reals, 1, "1",     water,             in_checkpoint, 0)
 // clang-format on
 
 /// How often a point may be halved.

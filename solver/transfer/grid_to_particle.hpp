@@ -222,7 +222,8 @@ struct GridToParticle {
     const Mat3<Real> g{sums.gradient.a * across - c * s.slope_x, sums.gradient.b * across - c * s.slope_y, c};
     MaterialState<Real> state{points.elastic_of(p), points.log_volume[p],
                               dilatant ? points.plastic_log_volume[p] : Real(0)};
-    const Material<Real, Laws> material = materials.of(points.material, points.plastic_shear, p);
+    const Material<Real, Laws> material = materials.of(points, p);
+    if (points.water_inflow) take_water(state, normal_of(s.slope_x, s.slope_y), points.water_inflow[p] * dt);
     const MaterialState<Real> before = state;
     const int pieces = pieces_of(g);
     if (pieces == 1)

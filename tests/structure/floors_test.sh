@@ -15,7 +15,8 @@ floors() {
         slides .
       ;;
     solver)
-      printf '%s\n' parallel state material grid transfer boundary options elements linear/krylov linear/operator \
+      printf '%s\n' parallel state material grid transfer boundary water options elements linear/krylov \
+        linear/operator \
         linear/preconditioner linear/direct integrator 'explicit column_implicit implicit' scene plan \
         run/recorders run ensemble .
       ;;

@@ -80,6 +80,11 @@ struct ConeNumbers {
     shear_cohesion = cohesion;
     if (dilatancy > friction) dilatancy = friction;
   }
+  /// The method leaves friction this share, where water bears the rest of the pressure.
+  TALUS_HD void bear(Real share) {
+    friction *= share;
+    residual_friction *= share;
+  }
   /// The method rounds the tip over this pressure [Pa], for implicit steps.
   void round_tip(Real pressure) { apex = pressure; }
 };

@@ -311,8 +311,10 @@ void check_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   check_points(fits, checkpoint.state, pulses, scene);
   check_homes(fits, checkpoint.state, scene);
   const std::size_t cells = scene.map.count();
-  for_each_running_map([&](const RunningMap& map, const auto& values) { fits.length(map.name, values.size(), cells); },
-                       checkpoint.state.maps);
+  const auto check_map = [&](const RunningMap& map, const auto& values) {
+    fits.length(map.name, values.size(), map.of_water && scene.water_table.empty() ? 0 : cells);
+  };
+  for_each_running_map(check_map, checkpoint.state.maps);
   fits.length("initial_thickness", checkpoint.memory.initial_thickness.size(), cells);
   const ContactState& contacts = checkpoint.state.contacts;
   const std::size_t count = contacts.force.empty() ? 0 : 3 * scene.contacts.size();

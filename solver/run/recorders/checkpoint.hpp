@@ -65,6 +65,8 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("way_unrecorded", c.motion_maps.path_unrecorded);
   item("steps_unrecorded", c.motion_maps.steps_unrecorded);
   item("records_motion", c.motion_maps.is_due);
+  item("steps_between_flows", c.water.steps_between);
+  item("last_flow", c.water.last);
   item("shaking_x", c.shaking.acceleration[0]);
   item("shaking_y", c.shaking.acceleration[1]);
   item("shaking_z", c.shaking.acceleration[2]);

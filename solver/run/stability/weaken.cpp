@@ -80,6 +80,7 @@ SolverSettings static_settings(const SolveOptions& options, const Scene& scene, 
   s.common.gravity_ramp = 1;
   s.common.bed = weakened(s.common.bed, factor);
   s.common.damping = 0;
+  if (s.common.water) s.common.water->permeability = s.common.water->critical = 0;  // pressure is that of the start
   for (PlaneWall& wall : s.common.walls) wall.to = 1e30;
   std::erase_if(s.common.loads, [](const LoadOptions& load) { return load.from > 0; });
   for (LoadOptions& load : s.common.loads) {

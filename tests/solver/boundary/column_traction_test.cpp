@@ -58,7 +58,8 @@ struct Sheet {
                                                  .columns = {mass.data(), rise.data()},
                                                  .step = {&clock, 0, {{0, 0, -9.81}}},
                                                  .with_yield = with_yield,
-                                                 .density = {2000, volumes.empty() ? nullptr : volumes.data()}});
+                                                 .density = {2000, volumes.empty() ? nullptr : volumes.data()},
+                                                 .submersion = {}});
   }
 };
 

@@ -47,7 +47,8 @@ struct Updated {
                                                                            .pressed = pressed.data(),
                                                                            .density = {2000, nullptr},
                                                                            .maps = maps,
-                                                                           .motion = nullptr},
+                                                                           .motion = nullptr,
+                                                                           .submersion = {}},
                                                                           nodes.data(),
                                                                           forces.data(),
                                                                           damping});

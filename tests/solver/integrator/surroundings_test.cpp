@@ -213,7 +213,8 @@ struct Bounded {
                                   .pressed = nullptr,
                                   .density = {2000, nullptr},
                                   .maps = {{thickness.data(), speed.data(), pressure.data(), arrival.data()}, 0},
-                                  .motion = nullptr};
+                                  .motion = nullptr,
+                                  .submersion = {}};
 
   Bounded() { clock.step_size = 0.1; }
   /// Column (5, 2) of block 1.

@@ -12,6 +12,7 @@
 #include "solver/options/output.hpp"
 #include "solver/options/scheme.hpp"
 #include "solver/options/solve.hpp"
+#include "solver/options/water.hpp"
 #include "tests/common/scratch.hpp"
 #include "tests/places.hpp"
 
@@ -40,6 +41,30 @@ TEST(SolveOptions, vectors_and_boxes_have_their_number_of_values) {
       "[[solve.load]] extent_m or force_N has the wrong number of values (a box has six, a force three). Give "
       "extent_m = [west, south, east, north, bottom, top] and force_N = [east, north, up]";
   EXPECT_EQ(faults("[[solve.load]]\nextent_m = [1.0]\n[[solve.load]]\nforce_N = [1.0]"), load + "\n" + load);
+}
+
+TEST(SolveOptions, water_needs_a_mass_that_it_can_be_in) {
+  const auto water = [](const std::string& more) { return faults("[solve.water]\npermeability_m2 = 1e-10\n" + more); };
+  EXPECT_EQ(water(""), "");
+  expect_words(water("[solve.material]\nmodel = \"mu-of-i\""), "does not go with every model");
+  expect_words(water("[solve.material]\ndilatancy_angle_deg = 5.0"), "critical_solid_fraction");
+  expect_words(water("[solve.material]\ndensity_kg_m3 = 1000.0"), "would have 1000 kg/m3");
+  expect_words(water("[solve.base]\npore_pressure_ratio = 0.2"), "twice");
+  expect_words(water("[solve]\nmapping = \"cartesian\""), "cartesian");
+  expect_words(faults("[solve.water]\ntable_depth_m = 1.0"), "no water flows");
+  expect_words(faults("[solve.water]\nlevel_m = 1.0"), "still water");
+  EXPECT_EQ(faults("[solve]\nintegrator = \"explicit\"\n[solve.water]\nlevel_m = 1.0"), "");
+}
+
+TEST(SolveOptions, fines_make_the_fluid_heavier_and_stiffer) {
+  WaterOptions w;
+  w.fines = 0.1;
+  const double grains = w.density_of_grains(2000), fluid = w.density_of_fluid(2000);
+  EXPECT_NEAR(w.solid_fraction * grains + (1 - w.solid_fraction) * fluid, 2000, 1e-9);
+  EXPECT_NEAR(fluid, 0.9 * 1000 + 0.1 * grains, 1e-9);
+  EXPECT_NEAR(w.viscosity_of_fluid(), 1.362e-3, 2e-6);  // Thomas (1965)
+  w.grain_diameter = 2e-3;
+  EXPECT_NEAR(w.permeability_at_start(), 4e-6 * 0.064 / (180 * 0.36), 1e-15);
 }
 
 /// What a recipe of [solve.base] says of the bed.

@@ -1,0 +1,273 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The flow of water along the columns of the grid, from cell to cell (T50a), and what it leaves at the bed.
+#pragma once
+
+#include "solver/boundary/column_flow.hpp"
+#include "solver/state/map_view.hpp"
+#include "solver/water/water_to_cells.hpp"
+
+namespace talus {
+
+/// A cell of a column as the points have filled it.
+template <class Real>
+struct WaterCell {
+  Real weight = 0;     ///< across the bed, dry points too [N]
+  Real depth = 0;      ///< of what has water, normal to the bed [m]
+  Real effective = 0;  ///< stress [Pa]
+  Real stiffness = 1;  ///< of the skeleton [Pa]
+  Real mobility = 0;   ///< k / mu_f [m2/(Pa s)]
+  Real solid = 0;      ///< solid fraction [-]
+  TALUS_HD bool wet() const { return depth > Real(0); }
+
+  WaterCell() = default;
+  TALUS_HD WaterCell(const PoreWater<Real>& water, const Vec4<Real>& sums, Real area) : weight(sums.w) {
+    if (!(sums.x > Real(0))) return;
+    depth = sums.x / area;
+    effective = sums.y / sums.x;
+    solid = water.solid_at(sums.z / sums.x);
+    stiffness = water.stiffness(solid, effective);
+    mobility = water.mobility(solid);
+  }
+  /// The conductance to the cell above for a step of `duration`, as a depth over a stiffness; 0 where either is dry. On
+  /// a `sealed` bed that of the parabola through both cells that is level there: the face is nearer to the lower one.
+  TALUS_HD Real to(const WaterCell& above, Real duration, bool sealed) const {
+    if (!wet() || !above.wet()) return Real(0);
+    Real apart = Real(0.5) * (depth / mobility + above.depth / above.mobility);
+    if (sealed) {
+      const Real all = depth + above.depth, own = depth * depth / Real(3),
+                 next = (all * all * all - depth * depth * depth) / (Real(3) * above.depth);
+      apart *= (next - own) / (depth * all);
+    }
+    return duration / apart;
+  }
+};
+
+/// What the cells of a column give back to the points.
+template <class Real>
+struct CellAnswer {
+  Real load = 0;    ///< across the bed at its middle [Pa]; 0: no matter
+  Real change = 0;  ///< of the effective stress [Pa]
+  Real inflow = 0;  ///< strain by water [-]
+  Real middle = 0;  ///< height of its middle over its node [layers]
+  CellAnswer() = default;
+  TALUS_HD explicit CellAnswer(const Vec4<Real>& kept) : load(kept.w), change(kept.x), inflow(kept.y), middle(kept.z) {}
+};
+
+/// One thread: one column. It sums the weight of the column's cells [N].
+template <class Real>
+struct WeighColumns : WaterStep<Real> {
+  const int* active;
+  const Vec4<Real>* cells;
+  Real* weights;  ///< [rows * columns]
+
+  TALUS_HD void operator()(int c) const {
+    if (!this->is_due()) return;
+    const ColumnNodes at = ColumnNodes::find(this->grid, active, c);
+    if (!at.in_domain()) return;
+    Real sum = 0;
+    for (int k = at.begin(); k < at.end(); ++k) sum += cells[at.node(k)].w;
+    weights[at.column] = sum > Real(0) ? sum : Real(0);
+  }
+};
+
+/// One thread: one column. Excess pressure flows along it by (T50a), backward Euler in time, with cells as deep as what
+/// fills them; the sums of the cells are zero again afterwards. What grains bear at the bed goes to the maps.
+template <class Real>
+struct FlowAlongColumns : WaterStep<Real> {
+  using Base = WaterStep<Real>;
+  using Base::clock, Base::grid, Base::water;
+  const int* active;
+  Real density;  ///< of the mass [kg/m3]
+  Vec4<Real>* cells;
+  Vec4<Real>* answers;      ///< CellAnswer of every cell; on the way up the pivots of the elimination
+  const Vec4<Real>* nodes;  ///< mass and momentum of the step's nodes; null: the bed's slip is not known
+  const Real* weights;      ///< of all columns, [rows * columns] [N]
+  MapView maps;
+
+  TALUS_HD void operator()(int c) const {
+    if (!this->is_due()) return;
+    const ColumnNodes at = ColumnNodes::find(grid, active, c);
+    if (!at.in_domain()) return;
+    if (!(weights[at.column] > Real(0))) {
+      maps.grains_share[at.column] = 1;
+      maps.effective_stress[at.column] = 0;
+      return;
+    }
+    const Column column(*this, at);
+    const Top total = eliminate(at, column);
+    substitute(at, column, total);
+  }
+
+ private:
+  struct Column {
+    Real area;      ///< of bed that is covered, along the slope [m2]
+    Real mass;      ///< weight of what is full of water across the bed [N/m3]
+    Real water;     ///< weight of the water across the bed [N/m3]
+    Real layer;     ///< height of a layer normal to the bed [m]
+    Real duration;  ///< [s]
+    TALUS_HD Column(const FlowAlongColumns& k, const ColumnNodes& at) : duration(Real(k.clock->water.duration)) {
+      const ColumnBed<Real> bed = bed_under(k.grid, k.weights, at.i, at.j);
+      area = bed.area;
+      layer = k.grid.layer_height * bed.normal.z;
+      const Real pull = -dot(k.gravity.at(*k.clock), bed.normal);
+      const Real depth = k.weights[at.column] / (area * (k.density * pull));
+      const Real below =
+          k.submersion.on() ? k.submersion.share(k.grid.terrain[at.column] + depth, k.grid.layer_height) : Real(0);
+      mass = k.density * pull * k.submersion.weight(below);
+      water = k.water.fluid_density * pull * (Real(1) - below);  // below the level it is there on all sides
+    }
+  };
+  /// What lies over a cell.
+  struct Top {
+    Real weight = 0;  ///< [N]
+    Real depth = 0;   ///< of water without a gap [m]
+  };
+
+  /// The load at the middle of what of a cell has water [Pa]: dry points of the cell and loads lie over it.
+  TALUS_HD Real load_on(const WaterCell<Real>& own, const Column& column, const Top& top) const {
+    const Real held = own.wet() ? own.depth * column.mass : own.weight / column.area;
+    return (top.weight + own.weight) / column.area - Real(0.5) * held;
+  }
+  /// The height of the middle of what is in a cell over its node [layers]: it fills the cell from below.
+  TALUS_HD Real middle_of(const WaterCell<Real>& own, const Column& column, int k) const {
+    const Real room = k == 0 ? Real(0.5) : Real(1), floor = k == 0 ? Real(0) : Real(-0.5);
+    const Real filled = own.weight / (column.area * column.mass * column.layer);
+    return floor + Real(0.5) * (filled < room ? filled : room);
+  }
+  TALUS_HD WaterCell<Real> cell(const ColumnNodes& at, const Column& column, int k) const {
+    if (k < at.begin() || k >= at.end()) return {};
+    return {water, cells[at.node(k)], column.area};
+  }
+  /// The excess pressure of a cell below `top` as it is [Pa]; what is sucked beyond `suction` is air.
+  TALUS_HD Real excess(const WaterCell<Real>& own, const Column& column, const Top& top) const {
+    const Real pressure = load_on(own, column, top) - own.effective;
+    return (pressure > -water.suction ? pressure : -water.suction) - column.water * (top.depth + Real(0.5) * own.depth);
+  }
+  /// The conductance through an open face of a cell; a column of one cell has that of the first mode of diffusion.
+  TALUS_HD Real to_face(const WaterCell<Real>& own, const Column& column, bool alone) const {
+    constexpr Real one_way = Real(2.4674011), two_ways = Real(4.9348022);  // pi^2 / 4, pi^2 / 2
+    return column.duration * own.mobility / own.depth *
+           (alone ? (water.drained_bed && !water.sealed_surface ? two_ways : one_way) : Real(2));
+  }
+
+  /// The method eliminates from the top, and leaves pivot, right side, conductance downwards and pressure at the start.
+  TALUS_HD Top eliminate(const ColumnNodes& at, const Column& column) const {
+    Top top;
+    WaterCell<Real> above, own = cell(at, column, at.end() - 1);
+    Real pivot = 1, right = 0;
+    for (int k = at.end() - 1; k >= at.begin(); --k) {
+      const WaterCell<Real> below = cell(at, column, k - 1);
+      if (!own.wet()) top.depth = Real(0);
+      if (own.wet()) {
+        const Real start = excess(own, column, top), store = own.depth / own.stiffness,
+                   up = own.to(above, column.duration, k == 0 && !water.drained_bed),
+                   down = below.to(own, column.duration, k == 1 && !water.drained_bed);
+        const bool alone = !above.wet() && !below.wet();
+        const Real handed = up / pivot;
+        Real open = 0;
+        if (!above.wet() && !water.sealed_surface) open += to_face(own, column, alone);
+        if (k == 0 && water.drained_bed) open += to_face(own, column, alone);
+        Real next = store + up + down + open - up * handed, side = store * start + handed * right;
+        if (k == 0) slip(at, column, own, start, next, side);
+        pivot = next;
+        right = side;
+        answers[at.node(k)] = {pivot, right, down, start};
+      }
+      top.weight += own.weight;
+      top.depth += own.depth;
+      above = own;
+      own = below;
+    }
+    return top;
+  }
+
+  /// The method adds what the slip of the mass over its bed does to the pressure of the lowest cell: as much volume as
+  /// the dilatancy asks for (T50f), implicit in the pressure.
+  TALUS_HD void slip(const ColumnNodes& at, const Column& column, const WaterCell<Real>& own, Real start, Real& pivot,
+                     Real& right) const {
+    if (!nodes || !(water.critical > Real(0))) return;
+    const Vec4<Real> node = nodes[at.node(0)];
+    if (!(node.w > Real(0))) return;
+    const Real speed = length(Vec3<Real>{node.x, node.y, node.z}) / node.w;
+    const Dilatancy<Real> d = water.dilatancy(own.solid, own.effective, speed / own.depth);
+    const Real way = speed * column.duration;
+    pivot -= way * d.slope;
+    right -= way * (d.tangent + d.slope * start);
+  }
+
+  /// The excess pressures of the three lowest cells of the water that touches the bed.
+  struct Foot {
+    Real pressure[3] = {}, middle[3] = {};  ///< [Pa], height above the bed [m]
+    Real depth = 0;                         ///< of these cells [m]
+    Real over = 0;                          ///< hydrostatic pressure at the bed [Pa]
+    int count = 0;
+    bool ends = false;  ///< what lies above is not of it
+
+    TALUS_HD void add(Real p, Real d) {
+      if (ends || count >= 3) return;
+      pressure[count] = p;
+      middle[count++] = depth + Real(0.5) * d;
+      depth += d;
+    }
+    /// The excess pressure at the bed: on the parabola through the cells, or the line; of a single cell on a cosine
+    /// that is level there.
+    TALUS_HD Real at_bed() const {
+      if (count < 2) return pressure[0] * Real(1.5707963);
+      Real sum = 0;
+      for (int a = 0; a < count; ++a) {
+        Real weight = pressure[a];
+        for (int b = 0; b < count; ++b) {
+          if (b != a) weight *= middle[b] / (middle[b] - middle[a]);
+        }
+        sum += weight;
+      }
+      return sum;
+    }
+  };
+
+  /// The method goes up with the pressures; `top` is what lies over the bed.
+  TALUS_HD void substitute(const ColumnNodes& at, const Column& column, Top top) const {
+    const Real load_on_bed = top.weight / column.area;
+    Foot foot;
+    Real below = 0;  // excess pressure of the cell below [Pa]
+    for (int k = at.begin(); k < at.end(); ++k) {
+      const int n = at.node(k);
+      const WaterCell<Real> own = cell(at, column, k);
+      cells[n] = {};
+      top.weight -= own.weight;
+      const Real load = load_on(own, column, top);
+      if (!own.wet()) {
+        answers[n] = {own.weight > Real(0) ? load : Real(0), Real(0), Real(0), middle_of(own, column, k)};
+        foot.ends = true;
+        continue;
+      }
+      const Vec4<Real> kept = answers[n];
+      const Real pressure = load - own.effective, start = kept.z;
+      const Real hydrostatic = (pressure > -water.suction ? pressure : -water.suction) - start,
+                 most = load - hydrostatic;
+      const Real ended = (kept.x + kept.y * below) / kept.w;
+      below = ended < most ? ended : most;
+      if (k == 0) foot.over = hydrostatic + Real(0.5) * column.water * own.depth;
+      if (k == 0 || foot.count > 0) foot.add(below, own.depth);
+      const Real change = below - start;
+      answers[n] = {load, -change, -water.strain(own.solid, own.effective, own.effective - change),
+                    middle_of(own, column, k)};
+    }
+    const Real excess = foot.count == 0 || water.drained_bed ? Real(0) : foot.at_bed();
+    const Real borne = foot.count == 0 ? Real(1) : water.strength_share(load_on_bed, load_on_bed - excess - foot.over);
+    record(at.column, load_on_bed, borne, excess);
+  }
+
+  /// The method records what water does at the bed of a column, of a load on it and of the excess [Pa].
+  TALUS_HD void record(int column, Real load, Real borne, Real excess) const {
+    constexpr double noticed = 0.1;
+    const double share = static_cast<double>(borne), pressure = 1 - share;
+    maps.grains_share[column] = share;
+    if (pressure > maps.peak_pore_pressure[column]) maps.peak_pore_pressure[column] = pressure;
+    maps.effective_stress[column] = share * static_cast<double>(load);
+    if (static_cast<double>(excess) > noticed * static_cast<double>(load)) maps.drained_time[column] = clock->time;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: The Talus authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pressure of the water in the pores of every column of the grid (T50): points give their effective stress to the
+// cells of the column, there water flows along it, and points take the change of their effective stress back, and the
+// volume that the water brought.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solver/water/flow_along_columns.hpp"
+
+namespace talus {
+
+/// One thread: one point. It takes what its cells answer: its effective stress, at its first step with water that of
+/// the `table` of the water, its share of strength, and the volume that water brings, `at_once` or until the next step
+/// with water.
+template <class Real, class Shape>
+struct WaterToPoints : WaterStep<Real> {
+  using Base = WaterStep<Real>;
+  using Base::clock, Base::grid, Base::points, Base::water;
+  const Vec4<Real>* answers;
+  const float* table;  ///< depth of the water table at the start, normal to the bed, [rows * columns] [m]
+  Real ratio;          ///< of the pressure to the load at the start; negative: hydrostatic
+  Real density;        ///< of the mass [kg/m3]
+  bool at_once;
+
+  TALUS_HD void operator()(int p) const {
+    if (!this->is_due() || points.cell[0][p] < 0) return;
+    const CellsAround<Real, Shape> at(grid, points, p);
+    const CellAnswer<Real> answer = gather(at, points.offset[2][p]);
+    if (!(answer.load > Real(0))) {
+      points.strength_share[p] = Real(1);
+      return;
+    }
+    Real effective = points.effective_stress[p];
+    if (effective < Real(no_water - 0.5)) {
+      effective = first(p, at, answer.load);
+    } else if (effective >= Real(0)) {
+      effective += answer.change;
+      const Real most = Real(2) * answer.load + water.suction;  // more is air, which a load has to press out again
+      effective = effective > Real(0) ? (effective < most ? effective : most) : Real(0);
+      take_in(p, at.normal, answer.inflow);
+    }
+    points.effective_stress[p] = effective;
+    if (effective < Real(0)) return;
+    Real dilatancy = 0;
+    if (water.critical > Real(0) && water.friction > Real(0)) dilatancy = points.strength_share[p] / water.friction;
+    const Real share = water.strength_share(answer.load, effective) * (Real(1) + dilatancy);
+    points.strength_share[p] = share > Real(0) ? share : Real(0);
+  }
+
+ private:
+  /// The answers of the cells at the point, `offset` over its node [layers]: in each column along z on the line through
+  /// its cell and the next one, or beyond the last one.
+  TALUS_HD CellAnswer<Real> gather(const CellsAround<Real, Shape>& at, Real offset) const {
+    CellAnswer<Real> sum;
+    Real weights = 0;
+    for (int q = 0; q < Shape::width * Shape::width; ++q) {
+      const int n = at.column(grid, q) + at.k * block_columns;
+      const CellAnswer<Real> own(answers[n]);
+      if (!(own.load > Real(0))) continue;
+      CellAnswer<Real> next;
+      int beside = offset < own.middle && at.k > 0 ? -1 : 1;
+      for (int tries = 0; tries < 2 && !(next.load > Real(0)); ++tries) {
+        if (tries == 1) beside = -beside;
+        if (at.k + beside >= 0) next = CellAnswer<Real>(answers[n + beside * block_columns]);
+      }
+      const Real apart = Real(beside) * (next.middle - own.middle) + Real(1);
+      const Real part =
+          next.load > Real(0) && apart > Real(0.25) ? Real(beside) * (offset - own.middle) / apart : Real(0);
+      const Real weight = at.weight(q), a = weight * (Real(1) - part), b = weight * part;
+      sum.load += own.load * a + next.load * b;
+      sum.change += own.change * a + next.change * b;
+      sum.inflow += own.inflow * a + next.inflow * b;
+      weights += weight;
+    }
+    if (!(weights > Real(0))) return sum;
+    const Real over = Real(1) / weights;
+    sum.load *= over;
+    sum.change *= over;
+    sum.inflow *= over;
+    return sum;
+  }
+
+  /// The effective stress at the start under a load [Pa].
+  TALUS_HD Real first(int p, const CellsAround<Real, Shape>& at, Real load) const {
+    const Real pull = -dot(this->gravity.at(*clock), at.normal);
+    const Real deep = pull > Real(0) ? load / (density * pull) : Real(0);
+    const Real dry = static_cast<Real>(table[grid.column(points.cell[0][p], points.cell[1][p])]);
+    if (deep < dry) return Real(no_water);
+    const Real pressure = ratio < Real(0) ? water.fluid_density * pull * (deep - dry) : ratio * load;
+    return pressure < load ? load - pressure : Real(0);
+  }
+
+  TALUS_HD void take_in(int p, const Vec3<Real>& normal, Real strain) const {
+    const Real duration = Real(clock->water.duration);
+    if (!at_once) {
+      points.water_inflow[p] = duration > Real(0) ? strain / duration : Real(0);
+      return;
+    }
+    MaterialState<Real> state{points.elastic_of(p), points.log_volume[p], points.plastic_log_volume[p]};
+    take_water(state, normal, strain);
+    points.set_elastic(p, state.elastic);
+    points.plastic_log_volume[p] = state.plastic_log_volume;
+  }
+};
+
+/// How the water stands at the start of a run.
+struct FirstWater {
+  std::vector<float> table;  ///< depth of the water table, normal to the bed, [rows * columns] [m]
+  double ratio = -1;         ///< of the pressure to the load; negative: hydrostatic
+  double density = 0;        ///< of the mass [kg/m3]
+};
+
+/// The water of a run on a device; nothing where there is none.
+template <class Real, class Device, class Shape>
+class WaterColumns {
+ public:
+  /// The constructor takes the water, how it stands at the start, and whether steps take what it brings `at_once`.
+  WaterColumns(const Device& device, const std::optional<PoreWater<double>>& water, const FirstWater& first,
+               bool at_once)
+      : device_(device), cells_(device), answers_(device), weights_(device), table_(device), at_once_(at_once) {
+    if (!water) return;
+    on_ = true;
+    water_ = water->as<Real>();
+    ratio_ = static_cast<Real>(first.ratio);
+    density_ = static_cast<Real>(first.density);
+    table_.upload(first.table);
+    weights_.resize_zeroed(first.table.size());
+  }
+  bool on() const { return on_; }  ///< whether there is water
+  std::size_t bytes() const { return bytes_of(cells_, answers_, weights_, table_); }
+
+  /// The method gives storage to the cells of so many nodes.
+  void resize(std::size_t nodes) {
+    if (!on_) return;
+    cells_.resize_zeroed(nodes);
+    answers_.resize_zeroed(nodes);
+  }
+
+  /// What flows ask for besides the points: the clock, gravity, loads (null: none), mass and momentum of the nodes
+  /// (null: the slip is not known), and still water.
+  struct Around {
+    const Clock* clock;
+    Gravity<Real> gravity;
+    const Vec3<double>* loads;
+    const Vec4<Real>* nodes;
+    Submersion<Real> submersion;
+    MapView maps;
+  };
+
+  /// The method lets water flow where the clock says so.
+  template <class Grid>
+  void flow(const ParticleView<Real>& points, const Materials<Real>& materials, Grid& grid, const Around& around) {
+    if (!on_) return;
+    const ProfilePhase<Device> phase(device_, "water");
+    const WaterStep<Real> step{grid.view(),       points, around.clock, around.gravity, around.loads,
+                               around.submersion, water_};
+    const int columns = grid.active_blocks() * block_columns;
+    scatter_points(device_, points.count, grid.groups(), WaterToCells<Real, Shape>{step, materials, cells_.data()});
+    for_each(device_, columns, WeighColumns<Real>{step, grid.active_list(), cells_.data(), weights_.data()});
+    for_each(device_, columns,
+             FlowAlongColumns<Real>{step, grid.active_list(), density_, cells_.data(), answers_.data(), around.nodes,
+                                    weights_.data(), around.maps});
+    for_each(device_, points.count,
+             WaterToPoints<Real, Shape>{step, answers_.data(), table_.data(), ratio_, density_, at_once_});
+  }
+
+ private:
+  Device device_;
+  bool on_ = false;
+  PoreWater<Real> water_;
+  Real ratio_ = -1, density_ = 0;
+  Buffer<Vec4<Real>, Device> cells_, answers_;
+  Buffer<Real, Device> weights_;
+  Buffer<float, Device> table_;
+  bool at_once_;
+};
+
+}  // namespace talus
