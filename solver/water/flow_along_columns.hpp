@@ -169,7 +169,11 @@ struct FlowAlongColumns : WaterStep<Real> {
         if (!above.wet() && !water.sealed_surface) open += to_face(own, column, alone);
         if (k == 0 && water.drained_bed) open += to_face(own, column, alone);
         Real next = store + up + down + open - up * handed, side = store * start + handed * right;
-        if (k == 0) slip(at, column, own, start, next, side);
+        if (k == 0) {
+          const SlipDilation dilation = slip(at, column, own);
+          next += dilation.growth;
+          side -= dilation.volume - dilation.growth * start;
+        }
         pivot = next;
         right = side;
         answers[at.node(k)] = {pivot, right, down, start};
@@ -182,18 +186,20 @@ struct FlowAlongColumns : WaterStep<Real> {
     return top;
   }
 
-  /// The method adds what the slip of the mass over its bed does to the pressure of the lowest cell: as much volume as
-  /// the dilatancy asks for (T50f), implicit in the pressure.
-  TALUS_HD void slip(const ColumnNodes& at, const Column& column, const WaterCell<Real>& own, Real start, Real& pivot,
-                     Real& right) const {
-    if (!nodes || !(water.critical > Real(0))) return;
+  /// The volume by which the slip of the mass over its bed dilates the lowest cell, over the area of bed (T50f) [m],
+  /// and how it grows with the pressure [m/Pa].
+  struct SlipDilation {
+    Real volume = 0, growth = 0;
+    /// The volume once the pressure has risen by so much [Pa].
+    TALUS_HD Real at(Real rise) const { return volume + growth * rise; }
+  };
+  TALUS_HD SlipDilation slip(const ColumnNodes& at, const Column& column, const WaterCell<Real>& own) const {
+    if (!nodes || !(water.critical > Real(0))) return {};
     const Vec4<Real> node = nodes[at.node(0)];
-    if (!(node.w > Real(0))) return;
-    const Real speed = length(Vec3<Real>{node.x, node.y, node.z}) / node.w;
+    if (!(node.w > Real(0))) return {};
+    const Real speed = length(Vec3<Real>{node.x, node.y, node.z}) / node.w, way = speed * column.duration;
     const Dilatancy<Real> d = water.dilatancy(own.solid, own.effective, speed / own.depth);
-    const Real way = speed * column.duration;
-    pivot -= way * d.slope;
-    right -= way * (d.tangent + d.slope * start);
+    return {way * d.tangent, -way * d.slope};
   }
 
   /// The excess pressures of the three lowest cells of the water that touches the bed.
@@ -251,8 +257,10 @@ struct FlowAlongColumns : WaterStep<Real> {
       if (k == 0) foot.over = hydrostatic + Real(0.5) * column.water * own.depth;
       if (k == 0 || foot.count > 0) foot.add(below, own.depth);
       const Real change = below - start;
-      answers[n] = {load, -change, -water.strain(own.solid, own.effective, own.effective - change),
-                    middle_of(own, column, k)};
+      // What has flowed in: the change of the pressure, and what dilation has made room for.
+      const Real dilated = k == 0 ? slip(at, column, own).at(ended - start) : Real(0);
+      const Real inflow = (ended - start) / own.stiffness + dilated / own.depth;
+      answers[n] = {load, -change, inflow, middle_of(own, column, k)};
     }
     const Real excess = foot.count == 0 || water.drained_bed ? Real(0) : foot.at_bed();
     const Real borne = foot.count == 0 ? Real(1) : water.strength_share(load_on_bed, load_on_bed - excess - foot.over);

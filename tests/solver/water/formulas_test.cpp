@@ -26,14 +26,6 @@ PoreWater<double> sample() {
           .suction = 500};
 }
 
-TEST(PoreWaterFormulas, strain_is_the_integral_of_stress_over_stiffness) {
-  const PoreWater<double> water = sample();
-  double sum = 0;
-  for (double s = 5; s < 2e4; s += 10) sum += 10 / water.stiffness(0.6, s);
-  EXPECT_NEAR(water.strain(0.6, 0, 2e4), sum, 1e-4 * sum);
-  EXPECT_EQ(water.strain(0.6, 3e3, 3e3), 0);
-}
-
 TEST(PoreWaterFormulas, permeability_is_that_of_the_start_there_and_falls_with_the_pores) {
   const PoreWater<double> water = sample();
   EXPECT_NEAR(water.mobility(0.6), 1e-10 / 1e-3, 1e-20);
