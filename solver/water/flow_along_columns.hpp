@@ -15,6 +15,7 @@ struct WaterCell {
   Real weight = 0;     ///< across the bed, dry points too [N]
   Real depth = 0;      ///< of what has water, normal to the bed [m]
   Real effective = 0;  ///< stress [Pa]
+  Real given = 0;      ///< the same as the points gave it, before the slip over the bed [Pa]
   Real stiffness = 1;  ///< of the skeleton [Pa]
   Real mobility = 0;   ///< k / mu_f [m2/(Pa s)]
   Real solid = 0;      ///< solid fraction [-]
@@ -24,7 +25,7 @@ struct WaterCell {
   TALUS_HD WaterCell(const PoreWater<Real>& water, const Vec4<Real>& sums, Real area) : weight(sums.w) {
     if (!(sums.x > Real(0))) return;
     depth = sums.x / area;
-    effective = sums.y / sums.x;
+    effective = given = sums.y / sums.x;
     solid = water.solid_at(sums.z / sums.x);
     stiffness = water.stiffness(solid, effective);
     mobility = water.mobility(solid);
@@ -137,7 +138,18 @@ struct FlowAlongColumns : WaterStep<Real> {
   }
   TALUS_HD WaterCell<Real> cell(const ColumnNodes& at, const Column& column, int k) const {
     if (k < at.begin() || k >= at.end()) return {};
-    return {water, cells[at.node(k)], column.area};
+    WaterCell<Real> own{water, cells[at.node(k)], column.area};
+    if (k == 0 && own.wet()) slip(at, column, own);
+    return own;
+  }
+  /// The method shears the lowest cell by the slip of the mass over its bed (T50f).
+  TALUS_HD void slip(const ColumnNodes& at, const Column& column, WaterCell<Real>& own) const {
+    if (!nodes || !(water.critical > Real(0)) || !(column.duration > Real(0))) return;
+    const Vec4<Real> node = nodes[at.node(0)];
+    if (!(node.w > Real(0))) return;
+    const Real rate = length(Vec3<Real>{node.x, node.y, node.z}) / (node.w * own.depth);
+    own.effective = water.sheared(own.solid, own.effective, rate * column.duration, rate);
+    own.stiffness = water.stiffness(own.solid, own.effective);
   }
   /// The excess pressure of a cell below `top` as it is [Pa]; what is sucked beyond `suction` is air.
   TALUS_HD Real excess(const WaterCell<Real>& own, const Column& column, const Top& top) const {
@@ -169,11 +181,6 @@ struct FlowAlongColumns : WaterStep<Real> {
         if (!above.wet() && !water.sealed_surface) open += to_face(own, column, alone);
         if (k == 0 && water.drained_bed) open += to_face(own, column, alone);
         Real next = store + up + down + open - up * handed, side = store * start + handed * right;
-        if (k == 0) {
-          const SlipDilation dilation = slip(at, column, own);
-          next += dilation.growth;
-          side -= dilation.volume - dilation.growth * start;
-        }
         pivot = next;
         right = side;
         answers[at.node(k)] = {pivot, right, down, start};
@@ -184,22 +191,6 @@ struct FlowAlongColumns : WaterStep<Real> {
       own = below;
     }
     return top;
-  }
-
-  /// The volume by which the slip of the mass over its bed dilates the lowest cell, over the area of bed (T50f) [m],
-  /// and how it grows with the pressure [m/Pa].
-  struct SlipDilation {
-    Real volume = 0, growth = 0;
-    /// The volume once the pressure has risen by so much [Pa].
-    TALUS_HD Real at(Real rise) const { return volume + growth * rise; }
-  };
-  TALUS_HD SlipDilation slip(const ColumnNodes& at, const Column& column, const WaterCell<Real>& own) const {
-    if (!nodes || !(water.critical > Real(0))) return {};
-    const Vec4<Real> node = nodes[at.node(0)];
-    if (!(node.w > Real(0))) return {};
-    const Real speed = length(Vec3<Real>{node.x, node.y, node.z}) / node.w, way = speed * column.duration;
-    const Dilatancy<Real> d = water.dilatancy(own.solid, own.effective, speed / own.depth);
-    return {way * d.tangent, -way * d.slope};
   }
 
   /// The excess pressures of the three lowest cells of the water that touches the bed.
@@ -257,10 +248,8 @@ struct FlowAlongColumns : WaterStep<Real> {
       if (k == 0) foot.over = hydrostatic + Real(0.5) * column.water * own.depth;
       if (k == 0 || foot.count > 0) foot.add(below, own.depth);
       const Real change = below - start;
-      // What has flowed in: the change of the pressure, and what dilation has made room for.
-      const Real dilated = k == 0 ? slip(at, column, own).at(ended - start) : Real(0);
-      const Real inflow = (ended - start) / own.stiffness + dilated / own.depth;
-      answers[n] = {load, -change, inflow, middle_of(own, column, k)};
+      const Real after = own.effective - change, inflow = -water.strain(own.solid, own.effective, after);
+      answers[n] = {load, after - own.given, inflow, middle_of(own, column, k)};
     }
     const Real excess = foot.count == 0 || water.drained_bed ? Real(0) : foot.at_bed();
     const Real borne = foot.count == 0 ? Real(1) : water.strength_share(load_on_bed, load_on_bed - excess - foot.over);

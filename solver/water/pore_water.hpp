@@ -62,6 +62,12 @@ struct PoreWater {
   TALUS_HD Real stiffness(Real solid, Real effective) const {
     return solid * ((effective > Real(0) ? effective : Real(0)) + reference) / compressibility;
   }
+  /// The compression of the skeleton by a change of the effective stress [Pa], (T50b) integrated [-].
+  TALUS_HD Real strain(Real solid, Real before, Real after) const {
+    const Real from = (before > Real(0) ? before : Real(0)) + reference,
+               to = (after > Real(0) ? after : Real(0)) + reference;
+    return Real(compressibility / solid * log(to / from));
+  }
   /// The permeability over the viscosity, k by Kozeny and Carman (Carman 1937), (T50c) [m2/(Pa s)].
   TALUS_HD Real mobility(Real solid) const {
     const Real pores = (Real(1) - solid) / (Real(1) - solid_fraction), grains = solid_fraction / solid;
