@@ -30,6 +30,11 @@ struct WaterCell {
     stiffness = water.stiffness(solid, effective);
     mobility = water.mobility(solid);
   }
+  /// The method shears the cell for a time [s] at a rate [1/s] without flow (T50e).
+  TALUS_HD void shear(const PoreWater<Real>& water, Real rate, Real duration) {
+    effective = water.sheared(solid, effective, rate * duration, rate);
+    stiffness = water.stiffness(solid, effective);
+  }
   /// The conductance to the cell above for a step of `duration`, as a depth over a stiffness; 0 where either is dry. On
   /// a `sealed` bed that of the parabola through both cells that is level there: the face is nearer to the lower one.
   TALUS_HD Real to(const WaterCell& above, Real duration, bool sealed) const {
@@ -107,6 +112,7 @@ struct FlowAlongColumns : WaterStep<Real> {
     Real water;     ///< weight of the water across the bed [N/m3]
     Real layer;     ///< height of a layer normal to the bed [m]
     Real duration;  ///< [s]
+    Real shear;     ///< its rate by the slip over the bed (T50f) [1/s]
     TALUS_HD Column(const FlowAlongColumns& k, const ColumnNodes& at) : duration(Real(k.clock->water.duration)) {
       const ColumnBed<Real> bed = bed_under(k.grid, k.weights, at.i, at.j);
       area = bed.area;
@@ -117,6 +123,7 @@ struct FlowAlongColumns : WaterStep<Real> {
           k.submersion.on() ? k.submersion.share(k.grid.terrain[at.column] + depth, k.grid.layer_height) : Real(0);
       mass = k.density * pull * k.submersion.weight(below);
       water = k.water.fluid_density * pull * (Real(1) - below);  // below the level it is there on all sides
+      shear = k.slip(at) / depth;
     }
   };
   /// What lies over a cell.
@@ -125,6 +132,12 @@ struct FlowAlongColumns : WaterStep<Real> {
     Real depth = 0;   ///< of water without a gap [m]
   };
 
+  /// The speed of the mass over the bed [m/s]; 0 where it is not known, or shear changes no volume.
+  TALUS_HD Real slip(const ColumnNodes& at) const {
+    if (!nodes || !(water.critical > Real(0))) return Real(0);
+    const Vec4<Real> node = nodes[at.node(0)];
+    return node.w > Real(0) ? length(Vec3<Real>{node.x, node.y, node.z}) / node.w : Real(0);
+  }
   /// The load at the middle of what of a cell has water [Pa]: dry points of the cell and loads lie over it.
   TALUS_HD Real load_on(const WaterCell<Real>& own, const Column& column, const Top& top) const {
     const Real held = own.wet() ? own.depth * column.mass : own.weight / column.area;
@@ -139,22 +152,13 @@ struct FlowAlongColumns : WaterStep<Real> {
   TALUS_HD WaterCell<Real> cell(const ColumnNodes& at, const Column& column, int k) const {
     if (k < at.begin() || k >= at.end()) return {};
     WaterCell<Real> own{water, cells[at.node(k)], column.area};
-    if (k == 0 && own.wet()) slip(at, column, own);
+    if (own.wet() && column.shear > Real(0)) own.shear(water, column.shear, column.duration);
     return own;
   }
-  /// The method shears the lowest cell by the slip of the mass over its bed (T50f).
-  TALUS_HD void slip(const ColumnNodes& at, const Column& column, WaterCell<Real>& own) const {
-    if (!nodes || !(water.critical > Real(0)) || !(column.duration > Real(0))) return;
-    const Vec4<Real> node = nodes[at.node(0)];
-    if (!(node.w > Real(0))) return;
-    const Real rate = length(Vec3<Real>{node.x, node.y, node.z}) / (node.w * own.depth);
-    own.effective = water.sheared(own.solid, own.effective, rate * column.duration, rate);
-    own.stiffness = water.stiffness(own.solid, own.effective);
-  }
-  /// The excess pressure of a cell below `top` as it is [Pa]; what is sucked beyond `suction` is air.
-  TALUS_HD Real excess(const WaterCell<Real>& own, const Column& column, const Top& top) const {
-    const Real pressure = load_on(own, column, top) - own.effective;
-    return (pressure > -water.suction ? pressure : -water.suction) - column.water * (top.depth + Real(0.5) * own.depth);
+  /// The pressure in a cell under a load [Pa]; what is sucked beyond `suction` is air.
+  TALUS_HD Real pressure_of(const WaterCell<Real>& own, Real load) const {
+    const Real pressure = load - own.effective;
+    return pressure > -water.suction ? pressure : -water.suction;
   }
   /// The conductance through an open face of a cell; a column of one cell has that of the first mode of diffusion.
   TALUS_HD Real to_face(const WaterCell<Real>& own, const Column& column, bool alone) const {
@@ -172,7 +176,8 @@ struct FlowAlongColumns : WaterStep<Real> {
       const WaterCell<Real> below = cell(at, column, k - 1);
       if (!own.wet()) top.depth = Real(0);
       if (own.wet()) {
-        const Real start = excess(own, column, top), store = own.depth / own.stiffness,
+        const Real hydrostatic = column.water * (top.depth + Real(0.5) * own.depth),
+                   start = pressure_of(own, load_on(own, column, top)) - hydrostatic, store = own.depth / own.stiffness,
                    up = own.to(above, column.duration, k == 0 && !water.drained_bed),
                    down = below.to(own, column.duration, k == 1 && !water.drained_bed);
         const bool alone = !above.wet() && !below.wet();
@@ -180,9 +185,8 @@ struct FlowAlongColumns : WaterStep<Real> {
         Real open = 0;
         if (!above.wet() && !water.sealed_surface) open += to_face(own, column, alone);
         if (k == 0 && water.drained_bed) open += to_face(own, column, alone);
-        Real next = store + up + down + open - up * handed, side = store * start + handed * right;
-        pivot = next;
-        right = side;
+        pivot = store + up + down + open - up * handed;
+        right = store * start + handed * right;
         answers[at.node(k)] = {pivot, right, down, start};
       }
       top.weight += own.weight;
@@ -240,9 +244,7 @@ struct FlowAlongColumns : WaterStep<Real> {
         continue;
       }
       const Vec4<Real> kept = answers[n];
-      const Real pressure = load - own.effective, start = kept.z;
-      const Real hydrostatic = (pressure > -water.suction ? pressure : -water.suction) - start,
-                 most = load - hydrostatic;
+      const Real start = kept.z, hydrostatic = pressure_of(own, load) - start, most = load - hydrostatic;
       const Real ended = (kept.x + kept.y * below) / kept.w;
       below = ended < most ? ended : most;
       if (k == 0) foot.over = hydrostatic + Real(0.5) * column.water * own.depth;
