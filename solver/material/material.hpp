@@ -67,11 +67,13 @@ TALUS_HD Material<Real, Laws> softened(Material<Real, Laws> m, Real plastic_shea
   return m;
 }
 
-/// Leaves a material this share of its strength by friction (T50g).
+/// Gives a material the strength that water leaves it: by friction (T50g; ParticleState::water_strength), or of mud
+/// which has taken in so much water, as ln of the volume (T28a).
 template <class Real, class Laws>
-TALUS_HD void bear(Material<Real, Laws>& m, Real share) {
+TALUS_HD void wet(Material<Real, Laws>& m, Real strength, Real log_volume) {
   m.change_law([&](auto, auto& numbers) {
-    if constexpr (requires { numbers.bear(share); }) numbers.bear(share);
+    if constexpr (requires { numbers.bear(strength); }) numbers.bear(strength);
+    if constexpr (requires { numbers.take_in(log_volume); }) numbers.take_in(log_volume);
   });
 }
 
@@ -111,7 +113,7 @@ struct Materials {
   template <class Points>
   TALUS_HD Material<Real, Laws> of(const Points& points, int p) const {
     Material<Real, Laws> m = of(points.material, points.plastic_shear, p);
-    if (points.strength_share) bear(m, points.strength_share[p]);
+    if (points.water_strength) wet(m, points.water_strength[p], points.plastic_log_volume[p]);
     return m;
   }
   /// The density of point p [kg/m3].

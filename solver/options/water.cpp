@@ -20,11 +20,12 @@ void need_of_others(recipe::Visitor& v, const WaterOptions& w, const SolveOption
           {"[solve.water] does not go with mapping = \"cartesian\"", "water flows along columns from the ground up",
            "Leave mapping out"});
   v.needs(o.every_material([](const MaterialOptions& m) {
-    return m.model == MaterialModel::drucker_prager || m.model == MaterialModel::hencky;
+    return m.model == MaterialModel::drucker_prager || m.model == MaterialModel::hencky ||
+           m.model == MaterialModel::herschel_bulkley;
   }),
           {"[solve.water] does not go with every model of the mass",
-           "what of the pressure grains bear is known of model = \"drucker-prager\" and \"hencky\" alone",
-           "Take one of those"});
+           "what the strength of the others becomes in it is not known here",
+           "Take model = \"drucker-prager\", \"herschel-bulkley\" or \"hencky\""});
   v.needs(o.every_material([](const MaterialOptions& m) { return !m.dilates(); }),
           {"[solve.water] beside dilatancy_angle_deg", "dilatancy follows from critical_solid_fraction there",
            "Leave dilatancy_angle_deg out"});
@@ -50,9 +51,8 @@ void describe_still_water(recipe::Visitor& v, WaterOptions& w, const SolveOption
   v.number("drag_coefficient", w.drag_coefficient, recipe::not_negative,
            "C of the drag C rho v^2 / 2 of the still water on the surface of the mass");
   const StepAbilities steps = abilities_of(o.asked_integrator());
-  v.needs(!w.level || !steps.solve_systems,
-          {"[solve.water] level_m does not go with this integrator", "steps of Newton's method know no still water",
-           "Take integrator = \"column-implicit\" or \"explicit\""});
+  v.needs(!w.level || steps.obey_cfl, {"[solve.water] level_m does not go with this integrator",
+                                       "steps of Newton's method know no still water", "Leave integrator out"});
   v.needs(!w.level || !o.energy_budget,
           {"[solve.water] level_m beside energy_budget", "the budget counts no buoyancy", "Leave energy_budget out"});
   v.needs(!w.level || o.material.density > w.fluid_density,
@@ -126,6 +126,12 @@ void WaterOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
       flows() || (!critical_solid_fraction && !pressure_ratio && !(table_depth > 0) && !(fines > 0) && !(suction > 0)),
       {"[solve.water] without permeability_m2 and grain_diameter_m", "no water flows, and its keys have no effect",
        "Give one of the two"});
+  const auto thickens = [](const MaterialOptions& m) {
+    return m.options_of<HerschelBulkley>().solid_fraction_exponent > 0;
+  };
+  v.needs(flows() || !all.any_material(thickens),
+          {"[solve.material] solid_fraction_exponent without water", "the solid fraction does not change there",
+           "Give [solve.water] permeability_m2"});
   if (flows()) need_of_others(v, *this, all);
 }
 

@@ -77,8 +77,8 @@ enum class Kept {
   FIELD(plastic_shear,      Reals, 1, "1",     softening,         in_frames,     0)                \
   /* across the bed, borne by the grains; negative: pore_water.hpp */                              \
   FIELD(effective_stress,   Reals, 1, "Pa",    water,             in_frames,     -2)               \
-  /* of the strength by friction, that pressure and dilatancy leave */                             \
-  FIELD(strength_share,     Reals, 1, "1",     water,             in_frames,     1)                \
+  /* the share of friction that water leaves, or below 0 all of it beside a suction [Pa] */        \
+  FIELD(water_strength,     Reals, 1, "1",     water,             in_checkpoint, 1)                \
   /* rate at which water adds to ln(volume) */                                                     \
   FIELD(water_inflow,       Reals, 1, "1/s",   water,             in_checkpoint, 0)                \
   /* plastic_shear at the last step with water */                                                  \

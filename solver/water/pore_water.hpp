@@ -91,7 +91,14 @@ struct PoreWater {
     const Real to = from * Real(exp(way < Real(20) ? way : Real(20))) - reference;
     return to > Real(0) ? to : Real(0);
   }
-  /// The share of their strength by friction that grains have under this load across the bed [Pa], of which they bear
+  /// The strength by friction of grains under this load across the bed [Pa] that bear `effective`, as
+  /// ParticleState::water_strength has it: the share that is left of it, or below 0 a suction beside it [Pa].
+  TALUS_HD Real strength(Real load, Real effective) const {
+    if (effective < load) return effective > Real(0) ? effective / load : Real(0);
+    const Real sucked = effective - load < suction ? effective - load : suction;
+    return sucked > Real(0) ? -sucked : Real(1);
+  }
+  /// The share of their friction on the bed that grains have under this load across it [Pa], of which they bear
   /// `effective` [-].
   TALUS_HD Real strength_share(Real load, Real effective) const {
     if (!(load > Real(0))) return Real(1);

@@ -30,7 +30,7 @@ struct WaterToPoints : WaterStep<Real> {
     const CellsAround<Real, Shape> at(grid, points, p);
     const CellAnswer<Real> answer = gather(at, points.offset[2][p]);
     if (!(answer.load > Real(0))) {
-      points.strength_share[p] = Real(1);
+      points.water_strength[p] = Real(1);
       return;
     }
     Real effective = points.effective_stress[p];
@@ -44,10 +44,12 @@ struct WaterToPoints : WaterStep<Real> {
     }
     points.effective_stress[p] = effective;
     if (effective < Real(0)) return;
-    Real dilatancy = 0;
-    if (water.critical > Real(0) && water.friction > Real(0)) dilatancy = points.strength_share[p] / water.friction;
-    const Real share = water.strength_share(answer.load, effective) * (Real(1) + dilatancy);
-    points.strength_share[p] = share > Real(0) ? share : Real(0);
+    Real strength = water.strength(answer.load, effective);
+    if (strength > Real(0) && water.critical > Real(0) && water.friction > Real(0)) {
+      const Real factor = Real(1) + points.water_strength[p] / water.friction;  // its dilatancy stood there
+      strength = factor > Real(0) ? strength * factor : Real(0);
+    }
+    points.water_strength[p] = strength;
   }
 
  private:

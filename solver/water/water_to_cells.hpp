@@ -124,10 +124,10 @@ struct WaterToCells : WaterStep<Real> {
     const Real duration = Real(this->clock->water.duration);
     const Real shear = Real(sqrt(Real(3)) * (points.plastic_shear[p] - points.shear_seen[p]));  // of simple shear
     points.shear_seen[p] = points.plastic_shear[p];
-    points.strength_share[p] = Real(0);
+    points.water_strength[p] = Real(0);
     if (!(duration > Real(0)) || !(shear > Real(0))) return effective;
     const Real rate = shear / duration, after = this->water.sheared(solid, effective, shear, rate);
-    points.strength_share[p] = this->water.dilatancy(solid, after, rate).tangent;
+    points.water_strength[p] = this->water.dilatancy(solid, after, rate).tangent;
     points.effective_stress[p] = after;
     return after;
   }

@@ -80,10 +80,14 @@ struct ConeNumbers {
     shear_cohesion = cohesion;
     if (dilatancy > friction) dilatancy = friction;
   }
-  /// The method leaves friction this share, where water bears the rest of the pressure.
-  TALUS_HD void bear(Real share) {
-    friction *= share;
-    residual_friction *= share;
+  /// The method leaves friction this share, where water bears the rest of the pressure; below 0 all of it, and that of
+  /// a suction [Pa], which is a cohesion.
+  TALUS_HD void bear(Real strength) {
+    if (strength < Real(0)) {
+      shear_cohesion -= friction * strength;
+    } else {
+      friction *= strength;
+    }
   }
   /// The method rounds the tip over this pressure [Pa], for implicit steps.
   void round_tip(Real pressure) { apex = pressure; }

@@ -86,7 +86,10 @@ struct FlowingLaw {
         Real(Real(2) * m.shear_modulus * sqrt(Real(0.5) * norm_squared(s.elastic)));  // sqrt(J2) of the trial
     const FlowEnd<Real> end = Law::end(m, n, shear, free_pressure(m, s.log_volume, s.plastic_log_volume),
                                        s.plastic_log_volume, step.duration);
-    if (end.left < shear) s.elastic = s.elastic * (end.left / shear);
+    if (end.left < shear) {
+      s.elastic = s.elastic * (end.left / shear);
+      s.plastic_shear = (shear - end.left) / (Real(1.7320508) * m.shear_modulus);
+    }
     s.plastic_log_volume += end.dilation;
   }
 

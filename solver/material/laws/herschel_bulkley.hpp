@@ -20,9 +20,10 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
   static constexpr std::string_view name = "herschel-bulkley";
 
   struct Options {
-    double yield_stress = 100;  ///< tau_y [Pa]
-    double consistency = 50;    ///< k [Pa s^n]
-    double flow_exponent = 1;   ///< n [-]
+    double yield_stress = 100;           ///< tau_y [Pa]
+    double consistency = 50;             ///< k [Pa s^n]
+    double flow_exponent = 1;            ///< n [-]
+    double solid_fraction_exponent = 0;  ///< q: tau_y and k go with the solid fraction to this power [-]
 
     bool softens() const { return false; }  ///< strength does not fall as the material shears
     bool dilates() const { return false; }  ///< shear does not change the volume
@@ -33,11 +34,17 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
                "herschel-bulkley: shear stress over the yield stress at a rate of 1/s; Bingham's viscosity");
       v.number("flow_exponent", flow_exponent, recipe::Range{0, 3, true, false},
                "herschel-bulkley: exponent of the rate; 1 is Bingham's law, less is shear-thinning");
+      v.number("solid_fraction_exponent", solid_fraction_exponent, recipe::not_negative,
+               "herschel-bulkley: power of the solid fraction, as [solve.water] drains it, with which yield stress and "
+               "consistency grow");
     }
   };
   static std::string words(const Options& o, const std::string& elasticity) {
+    const std::string thickens = o.solid_fraction_exponent > 0 ? ", both by the solid fraction to the power " +
+                                                                     six_digits(o.solid_fraction_exponent)
+                                                               : "";
     return "herschel-bulkley, " + elasticity + ", yield stress " + six_digits(o.yield_stress) + " Pa, consistency " +
-           six_digits(o.consistency) + " Pa s^" + six_digits(o.flow_exponent);
+           six_digits(o.consistency) + " Pa s^" + six_digits(o.flow_exponent) + thickens;
   }
   static std::string sentence(const Options& o) {
     const std::string stress = "a yield stress of " + six_digits(o.yield_stress) + " Pa and a ";
@@ -52,6 +59,13 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
     Real rest = 0;         ///< tau_y [Pa]
     Real consistency = 0;  ///< k [Pa s^n]
     Real exponent = 1;     ///< n [-]
+    Real thickening = 0;   ///< q [-]
+    /// The method thickens or thins mud whose volume has changed by water, as ln of the volume (T28a).
+    TALUS_HD void take_in(Real log_volume) {
+      const Real factor = Real(exp(-thickening * log_volume));
+      rest *= factor;
+      consistency *= factor;
+    }
   };
   template <class Real>
   static Numbers<Real> numbers(const Options& o, double) {
@@ -59,6 +73,7 @@ struct HerschelBulkley : FlowingLaw<HerschelBulkley> {
     n.rest = static_cast<Real>(o.yield_stress);
     n.consistency = static_cast<Real>(o.consistency);
     n.exponent = static_cast<Real>(o.flow_exponent);
+    n.thickening = static_cast<Real>(o.solid_fraction_exponent);
     return n;
   }
 

@@ -36,7 +36,8 @@ constexpr ParticleNeeds everything{.affine_transfer = true,
                                    .loads = true,
                                    .spreads = true,
                                    .several_materials = true,
-                                   .softening = true};
+                                   .softening = true,
+                                   .water = true};
 constexpr ParticleNeeds nothing_more{};
 
 /// Expects of every component of every field what `expected` says of its value at point p: expected(field, before, p).

@@ -53,6 +53,11 @@ TEST(PoreWaterFormulas, strength_ends_at_none_and_at_the_suction) {
   EXPECT_EQ(water.strength_share(1e4, -4e3), 0);
   EXPECT_EQ(water.strength_share(1e4, 4e4), 1.05);
   EXPECT_EQ(water.strength_share(0, 0), 1);
+  EXPECT_EQ(water.strength(1e4, 4e3), 0.4);
+  EXPECT_EQ(water.strength(1e4, -4e3), 0);
+  EXPECT_EQ(water.strength(1e4, 1.02e4), -200);
+  EXPECT_EQ(water.strength(1e4, 4e4), -500);
+  EXPECT_EQ(water.strength(0, 0), 1);
 }
 
 TEST(WaterCells, pass_water_on_by_their_depth_and_permeability) {

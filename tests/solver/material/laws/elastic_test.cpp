@@ -92,7 +92,7 @@ Material<double> mud(const HerschelBulkley::Options& o) {
 }
 
 HerschelBulkley::Options fluid(double exponent) {
-  return {.yield_stress = 500, .consistency = 200, .flow_exponent = exponent};
+  return {.yield_stress = 500, .consistency = 200, .flow_exponent = exponent, .solid_fraction_exponent = 0};
 }
 
 TEST(HerschelBulkley, returns_to_the_closed_form_at_any_rate_and_any_step) {
@@ -108,6 +108,31 @@ TEST(HerschelBulkley, returns_to_the_closed_form_at_any_rate_and_any_step) {
       }
     }
   }
+}
+
+TEST(HerschelBulkley, stiffens_with_the_solid_fraction_as_water_leaves) {
+  HerschelBulkley::Options o = fluid(0.5);
+  o.solid_fraction_exponent = 10;
+  auto m = mud(o);
+  const double drained = std::log(0.5 / 0.55);  // ln of the volume from a solid fraction of 0.5 to 0.55
+  wet(m, 0.3, drained);
+  const auto end = HerschelBulkley::flow<double>(m, m.numbers_of<HerschelBulkley>(), 1e9, 0, 1e9);
+  EXPECT_NEAR(m.numbers_of<HerschelBulkley>().rest, 500 * std::pow(1.1, 10), 1e-9);
+  const double rate = (1e9 - end.left) / m.shear_modulus / 1e9;
+  EXPECT_NEAR(end.left, std::pow(1.1, 10) * (500 + 200 * std::sqrt(rate)), 1e-6);
+}
+
+TEST(HerschelBulkley, counts_its_plastic_shear) {
+  const auto m = mud(fluid(1));
+  MaterialState<double> s;
+  Mat3<double> g{};
+  g.c.x = 1e-3;  // of simple shear, of which the elastic part is left out at the end
+  double plastic = 0;
+  for (int n = 0; n < 100; ++n) {
+    advance_material(m, g, 1e-3 / 20, s);
+    plastic += s.plastic_shear;
+  }
+  EXPECT_NEAR(plastic * std::sqrt(3.0), 0.1 - kirchhoff_stress(m, s).xz / m.shear_modulus, 1e-3 * 0.1);
 }
 
 TEST(HerschelBulkley, has_its_stress_in_steady_simple_shear) {
