@@ -109,6 +109,8 @@ class DeviceMaps {
     return all;
   }
 
+  std::vector<double> grains_share() const { return maps_.grains_share.download(); }
+
   std::size_t bytes() const {
     std::size_t total = 0;
     for_each_running_map([&](const RunningMap&, const auto& buffer) { total += buffer.bytes(); }, maps_);

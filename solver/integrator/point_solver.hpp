@@ -75,6 +75,8 @@ class PointSolver : public Solver {
 
   std::vector<double> thickness() override { return measures_.thickness(points_.view(), grid_.groups()); }
 
+  std::vector<double> grains_share() const override { return maps_.grains_share(); }
+
   std::vector<Vec3<double>> obstacle_impulses() const override { return surroundings_.contact().obstacle_impulses(); }
   const TerrainTables& ground() const override { return grid_.ground(); }
   int particle_count() const override { return points_.count(); }

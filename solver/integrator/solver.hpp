@@ -83,6 +83,8 @@ class Solver {
   /// The vertical thickness (T25), initial volume over cell area, [rows * columns] [m]; its sum times the cell area is
   /// the volume of the points to rounding.
   virtual std::vector<double> thickness() = 0;
+  /// What water leaves the grains of the load on the bed, [rows * columns] [-]; empty where there is none.
+  virtual std::vector<double> grains_share() const = 0;
   /// The impulse that every obstacle was given so far, along x, y and z [N s].
   virtual std::vector<Vec3<double>> obstacle_impulses() const = 0;
   virtual const TerrainTables& ground() const = 0;  ///< terrain as kernels use it

@@ -14,7 +14,12 @@ constexpr Column<GaugeReading> gauge_columns[] = {
     {"thickness_m", "m", [](const GaugeReading& r) { return r.thickness; }, "thickness"},
     {"speed_m_s", "m s-1", [](const GaugeReading& r) { return r.speed; }, "mean speed over depth"},
     {"surface_m", "m", [](const GaugeReading& r) { return r.surface; }, "elevation of the surface"},
+    {"pore_pressure_Pa", "Pa", [](const GaugeReading& r) { return r.pressure; }, "pore pressure at the bed"},
 };
+/// The columns of a run; the last one is of those with water in the pores alone.
+std::span<const Column<GaugeReading>> columns_of(const WaterOptions& water) {
+  return std::span(gauge_columns).first(std::size(gauge_columns) - (water.flows() ? 0 : 1));
+}
 
 /// The first of the two cells that a gauge lies between; the last pair where it lies on the last cell.
 int first_of_pair(double position, int count) { return std::min(static_cast<int>(std::floor(position)), count - 2); }
@@ -45,7 +50,7 @@ void check_places(const std::vector<GaugeOptions>& gauges, const Scene& scene) {
 }  // namespace
 
 GaugeRecorder::GaugeRecorder(const SolveOptions& options, const Scene& scene)
-    : TableRecorder(gauge_columns, places_of("gauge", options.gauges)),
+    : TableRecorder(columns_of(options.water), places_of("gauge", options.gauges)),
       columns_(static_cast<std::size_t>(scene.grid.columns)),
       densities_{options.material.density} {
   check_places(options.gauges, scene);
@@ -53,29 +58,35 @@ GaugeRecorder::GaugeRecorder(const SolveOptions& options, const Scene& scene)
   const TerrainTables& terrain = scene.terrain;
   for (const GaugeOptions& g : options.gauges) {
     const auto [xi, eta] = in_cells(scene.map, g.x, g.y);
-    sites_.push_back(
-        {.xi = xi,
-         .eta = eta,
-         .bed = terrain.datum + terrain_at(scene.grid, terrain, xi, eta),
-         .low = scene.map.index(first_of_pair(xi, scene.grid.columns), first_of_pair(eta, scene.grid.rows))});
+    Site site{.xi = xi,
+              .eta = eta,
+              .bed = terrain.datum + terrain_at(scene.grid, terrain, xi, eta),
+              .load = 0,
+              .low = scene.map.index(first_of_pair(xi, scene.grid.columns), first_of_pair(eta, scene.grid.rows))};
+    const double x = at(site, terrain.slope_x), y = at(site, terrain.slope_y);
+    site.load = options.material.density * options.gravity_size() / (1 + x * x + y * y);  // cos^2 of the slope
+    sites_.push_back(site);
   }
 }
 
 std::vector<GaugeReading> GaugeRecorder::samples(const Instant& now) const {
-  const std::vector<double> thickness = now.solver.thickness();
+  const std::vector<double> thickness = now.solver.thickness(), borne = now.solver.grains_share();
   const ParticleState points = now.solver.shown();
   std::vector<GaugeReading> readings;
   for (const Site& site : sites_) {
-    const double depth = thickness_at(site, thickness);
-    readings.push_back({.thickness = depth, .speed = speed_at(site, points), .surface = site.bed + depth});
+    const double depth = at(site, thickness);
+    readings.push_back({.thickness = depth,
+                        .speed = speed_at(site, points),
+                        .surface = site.bed + depth,
+                        .pressure = borne.empty() ? 0 : (1 - at(site, borne)) * site.load * depth});
   }
   return readings;
 }
 
-double GaugeRecorder::thickness_at(const Site& site, const std::vector<double>& thickness) const {
+double GaugeRecorder::at(const Site& site, const std::vector<double>& map) const {
   const std::size_t column = site.low % columns_, row = site.low / columns_;
   const double x = site.xi - static_cast<double>(column), y = site.eta - static_cast<double>(row);
-  const double* south = &thickness[site.low];
+  const double* south = &map[site.low];
   const double* north = south + columns_;
   return (1 - y) * ((1 - x) * south[0] + x * south[1]) + y * ((1 - x) * north[0] + x * north[1]);
 }

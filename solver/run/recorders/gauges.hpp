@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recorder of gauges: thickness, speed and elevation of the surface at points of the map.
+// Recorder of gauges: thickness, speed, elevation of the surface and pore pressure at points of the map.
 #pragma once
 
 #include "solver/options/solve.hpp"
@@ -12,6 +12,7 @@ struct GaugeReading {
   double thickness;  ///< vertical, bilinear between the map's cells; ground that can be eroded counts too [m]
   double speed;      ///< of the mean velocity over depth, by mass, of the points within a cell; 0 where none is [m/s]
   double surface;    ///< elevation of the bed at the gauge itself, plus thickness [m]
+  double pressure;   ///< of the water in the pores at the bed, of the load of the thickness [Pa]
 };
 
 /// The recorder that reads every gauge at each record. Without gauges there is no such recorder; with them a record
@@ -28,9 +29,11 @@ class GaugeRecorder : public TableRecorder<GaugeReading> {
   struct Site {
     double xi, eta;   ///< cells from the centre of the map's first one
     double bed;       ///< elevation [m]
+    double load;      ///< across the bed of a metre of thickness [Pa/m]
     std::size_t low;  ///< the cell to the south-west of it
   };
-  double thickness_at(const Site& site, const std::vector<double>& thickness) const;
+  /// The value of a map at a gauge, bilinear.
+  double at(const Site& site, const std::vector<double>& map) const;
   double speed_at(const Site& site, const ParticleState& points) const;
 
   std::vector<Site> sites_;

@@ -262,6 +262,24 @@ TEST_P(Gauges, read_at_the_centre_of_a_cell_what_the_map_shows_there) {
   EXPECT_EQ(column.place, "gauge rim");
 }
 
+TEST_P(Gauges, read_the_pressure_of_the_water_at_the_bed) {
+  // A layer at rest, 2 m deep, between frictionless walls; and one that its water carries.
+  const Domain layer = filled(ground(16, 16, 1.0, 0.5, flat), {2, 14, 2, 14, 0, 2});
+  SolveOptions o = elastic_options(1e7, Integrator::explicit_);
+  o.walls = rollers(2, 14);
+  o.gauges = {{.name = "middle", .x = 8.3, .y = 7.8}};
+  o.water.permeability = 0;
+  for (const double carried : {0.5, 1.0}) {
+    o.water.pressure_ratio = carried;
+    const RunHistory history = recorded(layer, o, GetParam(), 0.02, 0.01);
+    const double load = o.material.density * 9.81 * 2;
+    EXPECT_NEAR(history.at("gauge_middle_pore_pressure_Pa").values.back(), carried * load, 0.01 * load);
+    EXPECT_EQ(history.at("liquefied_share").values.back(), carried == 1 ? 1 : 0);
+  }
+  o.water = {};
+  EXPECT_FALSE(recorded(layer, o, GetParam(), 0, 1).find("gauge_middle_pore_pressure_Pa"));
+}
+
 /// The faults of a recipe with these gauges.
 std::vector<Fault> faults_with(const std::vector<GaugeOptions>& gauges, const Domain& d) {
   SolveOptions o;
