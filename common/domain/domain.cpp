@@ -98,17 +98,6 @@ std::size_t cell_under(const MapGrid& grid, double x, double y) {
   return grid.index(place((x - grid.west) / grid.cell, grid.columns), place((y - grid.south) / grid.cell, grid.rows));
 }
 
-/// Thickness of the erodible layers in each cell [m], by the volumes of their points.
-std::vector<double> erodible_thickness(const Domain& domain) {
-  std::vector<double> thickness(domain.grid.count(), 0.0);
-  const SeedPoints& points = domain.points;
-  for (std::size_t p = 0; p < points.size(); ++p)
-    if (points.release[p] < domain.erodible)
-      thickness[cell_under(domain.grid, points.x[p], points.y[p])] += points.volume[p];
-  for (double& value : thickness) value /= domain.grid.cell * domain.grid.cell;
-  return thickness;
-}
-
 constexpr double most_map_cells = 2147483647.0;  // an index of a cell is an int
 
 [[noreturn]] void refuse_domain(const fs::path& file, const std::string& why) {
@@ -172,6 +161,16 @@ void check_places(const fs::path& file, const Domain& domain) {
 }
 
 }  // namespace
+
+std::vector<double> erodible_thickness(const Domain& domain) {
+  std::vector<double> thickness(domain.grid.count(), 0.0);
+  const SeedPoints& points = domain.points;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (points.release[p] < domain.erodible)
+      thickness[cell_under(domain.grid, points.x[p], points.y[p])] += points.volume[p];
+  for (double& value : thickness) value /= domain.grid.cell * domain.grid.cell;
+  return thickness;
+}
 
 bool is_plain_name(const std::string& name) {
   return !name.empty() && name.find_first_not_of(plain_letters) == std::string::npos;

@@ -62,6 +62,9 @@ Domain read_domain(const std::filesystem::path& file);
 /// The provenance of a domain: the head of the file alone is read, its seal checked. Throws as read_domain() does.
 Facts domain_facts(const std::filesystem::path& file);
 
+/// The vertical thickness of the erodible layers in each cell [m], by the volumes of their points.
+std::vector<double> erodible_thickness(const Domain& domain);
+
 /// This function multiplies the vertical thickness of what is released by `factor` > 0: release_thickness, the volumes
 /// of the released points and their heights above the ground that they lie on (the bed, or the erodible layers under
 /// them). The bed stays, and so does the outline; the surface before the failure follows the thickness. Erodible

@@ -26,6 +26,7 @@ struct RunningMaps {
   Values effective_stress{};    // as water flowed last [Pa]
   Values grains_share{};        // of the normal stress, as water flowed last: what friction acts on [-]
   Values drained_time{};        // last time at which the excess was above a tenth of the load [s]
+  Values ground{};              // vertical depth of erodible ground that is left; empty where its strength decides [m]
 };
 
 /// Running maps whose values are each made from the same arguments.
@@ -38,7 +39,8 @@ RunningMaps<Values> make_running_maps(const Arguments&... arguments) {
           .peak_pore_pressure = Values(arguments...),
           .effective_stress = Values(arguments...),
           .grains_share = Values(arguments...),
-          .drained_time = Values(arguments...)};
+          .drained_time = Values(arguments...),
+          .ground = Values(arguments...)};
 }
 
 /// The maps of a finished run as run.h5 holds them, [rows * columns] each, row 0 southernmost. Thickness is vertical
@@ -69,13 +71,16 @@ struct RunMaps {
 /// One of the maps of RunMaps. (Under a name, since nvcc writes a bare pointer to a member in a way that GCC warns of.)
 using MapMember = std::vector<double> RunMaps::*;
 
+/// Whose maps they are: those of other runs are empty.
+enum class MapsOf { every_run, water_in_pores, erosion_by_rate };
+
 /// One of the RunningMaps, and the map of the finished run that it becomes.
 struct RunningMap {
-  const char* name;       ///< in checkpoints
-  double start;           ///< its value before anything moved
-  MapMember result;       ///< where it ends; negative values (not yet) become NaN there; null: nowhere
-  double unit;            ///< SI units in one unit of the result: 1000 for kPa
-  bool of_water = false;  ///< empty in runs without water in the pores
+  const char* name;  ///< in checkpoints
+  double start;      ///< its value before anything moved
+  MapMember result;  ///< where it ends; negative values (not yet) become NaN there; null: nowhere
+  double unit;       ///< SI units in one unit of the result: 1000 for kPa
+  MapsOf of = MapsOf::every_run;
 };
 
 /// Calls visit(row, maps.member...) for every one of the RunningMaps, with the same member of all `maps`.
@@ -85,10 +90,12 @@ void for_each_running_map(Visit&& visit, Maps&&... maps) {
   visit(RunningMap{"peak_speed", 0, &RunMaps::peak_speed, 1}, maps.peak_speed...);
   visit(RunningMap{"peak_pressure", 0, &RunMaps::peak_pressure_kPa, 1000}, maps.peak_pressure...);
   visit(RunningMap{"arrival_time", -1, &RunMaps::arrival_time, 1}, maps.arrival_time...);
-  visit(RunningMap{"peak_pore_pressure", 0, &RunMaps::peak_pore_pressure, 1, true}, maps.peak_pore_pressure...);
-  visit(RunningMap{"effective_stress", 0, &RunMaps::effective_stress_kPa, 1000, true}, maps.effective_stress...);
-  visit(RunningMap{"grains_share", 1, nullptr, 1, true}, maps.grains_share...);
-  visit(RunningMap{"drained_time", -1, &RunMaps::drained_time, 1, true}, maps.drained_time...);
+  constexpr MapsOf water = MapsOf::water_in_pores;
+  visit(RunningMap{"peak_pore_pressure", 0, &RunMaps::peak_pore_pressure, 1, water}, maps.peak_pore_pressure...);
+  visit(RunningMap{"effective_stress", 0, &RunMaps::effective_stress_kPa, 1000, water}, maps.effective_stress...);
+  visit(RunningMap{"grains_share", 1, nullptr, 1, water}, maps.grains_share...);
+  visit(RunningMap{"drained_time", -1, &RunMaps::drained_time, 1, water}, maps.drained_time...);
+  visit(RunningMap{"ground", 0, nullptr, 1, MapsOf::erosion_by_rate}, maps.ground...);
 }
 
 /// What the classes of a map are, and so its colours.

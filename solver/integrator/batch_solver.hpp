@@ -181,6 +181,11 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     }
     meet_surfaces(at, inertia, true);
     columns_.slow(at, surroundings_.bed(), this->column_density());
+    if (settings_.erosion_rate > 0) {
+      for_each(device_, at.count(),
+               ErodeColumns<Real, PackedNodes<Real>>{grid_.view(), grid_.active_list(), at.nodes, clock_.data(),
+                                                     this->column_density(), maps_.view(), settings_.erosion_rate});
+    }
   }
 
   /// The surroundings of the columns as the nodes' kernels see them, which hold columns where they count no losses;

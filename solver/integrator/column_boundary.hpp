@@ -9,6 +9,7 @@
 #include "solver/boundary/bed_hold.hpp"
 #include "solver/boundary/column_traction.hpp"
 #include "solver/boundary/contact_impulses.hpp"
+#include "solver/boundary/erosion.hpp"
 #include "solver/boundary/submersion.hpp"
 #include "solver/boundary/walls.hpp"
 
@@ -109,9 +110,10 @@ template <class Real>
 struct SteppedColumn : ColumnNodes {
   bool inside;
   int first, last;
-  int top_contact;  ///< highest layer in contact with the bed
-  int rise_layer;   ///< layer whose separation velocity is kept (BedColumns::rise)
-  Real dt;          ///< [s]; read once, since the compiler cannot exclude that stores change the clock
+  int top_contact;       ///< highest layer in contact with the bed
+  int rise_layer;        ///< layer whose separation velocity is kept (BedColumns::rise)
+  Real dt;               ///< [s]; read once, since the compiler cannot exclude that stores change the clock
+  int ground = INT_MIN;  ///< highest layer that lies in ground eroded by rate
 };
 
 /// The velocities of a node in a step [m/s].
@@ -157,13 +159,14 @@ struct ColumnBoundary {
   /// Column number c of the active blocks; not inside where it is out of the domain or the batch has halted.
   TALUS_HD SteppedColumn<Real> locate(int c) const {
     const int halt = clock->alarms.halt;  // looked at once all is on its way
-    SteppedColumn<Real> at{ColumnNodes::find(grid, active, c), false, 0, 0, 0, no_layer, Real(0)};
+    SteppedColumn<Real> at{ColumnNodes::find(grid, active, c), false, 0, 0, 0, no_layer, Real(0), INT_MIN};
     at.inside = halt == running && at.in_domain();
     if (!at.inside) return at;
     at.first = at.begin();
     at.last = at.end();
     at.top_contact = grid.contact_layer(at.column);
     if (columns.mass) at.rise_layer = grid.contact_layer(at.column);
+    if (maps.ground) at.ground = ground_layer(maps.ground[at.column], static_cast<double>(grid.layer_height));
     at.dt = Real(clock->step_size);
     return at;
   }
@@ -174,6 +177,7 @@ struct ColumnBoundary {
   TALUS_HD void meet(const SteppedColumn<Real>& at, int k, Real mass, const Inertia& inertia, NodeVelocities<Real>& v,
                      bool with_friction = true) const {
     v.met = k <= at.top_contact || k == at.rise_layer ? meet_bed(at, k, v.free, mass, inertia) : v.free;
+    if (k <= at.ground) v.met = {};
     v.after = walls.count > 0 ? meet_walls(walls, at.i, at.j, k, v.met, with_friction) : v.met;
   }
 
@@ -186,7 +190,8 @@ struct ColumnBoundary {
     if constexpr (Losses::counted) pressed[at.column] = static_cast<Real>(losses.pressed);
     if (!(mass > Real(0))) return;
     if constexpr (Losses::counted) losses.add_to(*clock);
-    if (holds) hold_column(grid, nodes, at, {gravity.at(*clock), at.dt, clock}, walls, density.uniform, columns.rise);
+    if (holds && at.ground < at.first)
+      hold_column(grid, nodes, at, {gravity.at(*clock), at.dt, clock}, walls, density.uniform, columns.rise);
     const double m = static_cast<double>(mass);
     record_column(maps, at.column, {m, density.of(at.column, m), static_cast<double>(grid.spacing)}, clock->time);
   }

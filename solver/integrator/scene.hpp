@@ -107,6 +107,7 @@ struct Scene {
   std::vector<double> load_volumes;  ///< volume of the points each load pulls at [m3]
   std::vector<Bed<double>> bed;      ///< of every column; empty where it is the same everywhere
   std::vector<float> water_table;  ///< its depth at the start, normal to the bed, of every column; empty: no water [m]
+  std::vector<double> erodible;    ///< vertical depth of ground that is eroded by rate, of every column; or empty [m]
   ContactPoints contacts;
   Shaking shaking;                         ///< of the ground
   Inflow inflow;                           ///< what enters over time

@@ -49,6 +49,7 @@ struct IntegratorSettings : SchemeOptions, GravityOptions, OutputOptions {
   std::vector<LoadOptions> loads = {};
   Submersion<double> submersion = {};  ///< its level is an elevation
   std::optional<PoreWater<double>> water = {};
+  double erosion_rate = 0;  ///< E of (T52) [1/m]; 0: ground is eroded as its strength has it
   double water_ratio = -1;  ///< of the pressure to the load at the start; negative: hydrostatic
 };
 

@@ -38,6 +38,8 @@ Hindrance beyond_rest(const SolveOptions& o) {
   if (Hindrance law = law_beyond_newton(o)) return law;
   if (o.deterministic) return {"[solve] deterministic = true", "sums of implicit steps are made in any order on a GPU"};
   if (o.energy_budget) return {"[solve] energy_budget = true", "losses are counted in steps of a flow alone"};
+  if (o.water.level) return {"[solve.water] level_m", "still water acts in steps of a flow alone"};
+  if (o.erosion.by_rate()) return {"[solve.erosion] law = \"rate\"", "ground is held in steps of a flow alone"};
   return {};
 }
 

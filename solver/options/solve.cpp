@@ -128,6 +128,7 @@ void SolveOptions::describe(recipe::Visitor& v) {
   MassOptions::describe(v);
   recipe::table(v, "base", base, "the bed under it");
   recipe::table(v, "water", water, "the water between the grains", *this);
+  recipe::table(v, "erosion", erosion, "how ground that can be eroded is taken along", *this);
   base.settle(gravity_size() > 0 ? gravity_size() : 1);
   need_columns(v, *this);
   v.needs(!accuracy || !cfl,

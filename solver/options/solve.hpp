@@ -7,6 +7,7 @@
 
 #include "common/recipe/recipe.hpp"
 #include "solver/options/bed.hpp"
+#include "solver/options/erosion.hpp"
 #include "solver/options/implicit.hpp"
 #include "solver/options/inflow.hpp"
 #include "solver/options/loads.hpp"
@@ -38,6 +39,7 @@ struct SolveOptions : TimeOptions, SchemeOptions, GravityOptions, OutputOptions,
   ShakingOptions shaking;
   BaseOptions base;
   WaterOptions water;
+  ErosionOptions erosion;
 
   /// The integrator that the recipe asks for, by its name or by a preset.
   Integrator asked_integrator() const {

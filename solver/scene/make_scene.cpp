@@ -250,9 +250,13 @@ Scene finish_scene(const Domain& domain, const SolveOptions& options, Scene scen
   attach_loads(domain, options, scene, faults);
   attach_materials(options, scene, faults);
   check_bed(domain, options, faults);
+  if (options.erosion.by_rate() && domain.erodible == 0)
+    faults.push_back({"[solve.erosion] law = \"rate\", and the domain holds no ground that can be eroded",
+                      "the law would have no effect", "Give [[preprocess.erodible]], or leave [solve.erosion] out"});
   if (!faults.empty()) throw RecipeError(std::move(faults));
   scene.bed = make_bed(domain, options);
   scene.water_table = make_water_table(domain, options, scene.terrain);
+  if (options.erosion.by_rate()) scene.erodible = erodible_thickness(domain);
   scene.contacts = make_contact_points(domain.grid, scene.grid, scene.terrain, make_obstacles(options.obstacles));
   log_detail(fmt::format("scene: {} points placed", scene.points.size()));
   return scene;

@@ -20,9 +20,11 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings, 
   const auto cells = scene.map.count();
   for_each_running_map(
       [&](const RunningMap& map, auto& values) {
-        if (!map.of_water || settings.water) values.assign(cells, map.start);
+        if (map.of == MapsOf::every_run || (map.of == MapsOf::water_in_pores && settings.water))
+          values.assign(cells, map.start);
       },
       state.maps);
+  state.maps.ground = scene.erodible;
   state.clock.control.courant = settings.cfl.value_or(default_cfl);
   state.clock.control.longest = settings.largest_step;
   state.clock.motion_maps.column_spacing = scene.grid.spacing;

@@ -64,6 +64,7 @@ IntegratorSettings make_common(const SolveOptions& o, const GridShape& grid) {
   std::transform(o.walls.begin(), o.walls.end(), std::back_inserter(s.walls), make_wall);
   s.loads = o.loads;
   s.submersion = make_submersion(o);
+  s.erosion_rate = o.erosion.by_rate() ? o.erosion.rate : 0;
   s.water = make_water(o);
   s.water_ratio = o.water.pressure_ratio.value_or(-1);
   return s;

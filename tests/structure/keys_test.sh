@@ -13,7 +13,7 @@ test_a_key_is_its_member_and_the_unit() {
 import re, sys
 visit = r"v\.(?:number|optional_number|integer|flag|text|path|numbers|pairs|integers)\(|(choice|list|table)\(\s*v,"
 call = re.compile(rf"(?:{visit})\s*\"([A-Za-z0-9_]+)\",\s*([A-Za-z_][A-Za-z0-9_.]*)")
-unit = re.compile("_(kg_m3|m3_s|m2_s|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|Pa_s|kPa|Pa|N|MB)$")
+unit = re.compile("_(kg_m3|per_m|m3_s|m2_s|m_s2|m_s|m3|m2|m|s|deg|Pa_sn|Pa_s|kPa|Pa|N|MB)$")
 count, wrong = 0, []
 for name in sys.argv[1:]:
     text = open(name, encoding="utf-8").read()

@@ -36,11 +36,6 @@ void visit_points(State& s, Item&& item) {
   visit_particle_fields(visit_one, s);
 }
 
-template <class Maps, class Item>
-void visit_maps(Maps& m, Item&& item) {
-  for_each_running_map([&](const RunningMap& map, auto& values) { item(map.name, values); }, m);
-}
-
 template <class Contacts, class Item>
 void visit_contacts(Contacts& c, Item&& item) {
   item("force", c.force);
@@ -50,7 +45,8 @@ void visit_contacts(Contacts& c, Item&& item) {
 /// Visits all that a checkpoint holds beside points and history, group by group: items(group) is the visitor of one.
 template <class AnyCheckpoint, class Items>
 void visit(AnyCheckpoint& c, Items&& items) {
-  visit_maps(c.state.maps, items("/maps"));
+  auto map_item = items("/maps");
+  for_each_running_map([&](const RunningMap& map, auto& values) { map_item(map.name, values); }, c.state.maps);
   visit_contacts(c.state.contacts, items("/contacts"));
   visit_clock(c.state.clock, items("/clock"));
   visit_memory(c.memory, items("/memory"));
@@ -171,7 +167,10 @@ void check_lengths(const h5::File& file, const Checkpoint& c) {
                [&](const ParticleField&, const std::string& name, const auto& list) { points(name, list); });
   if (!c.state.homes.empty()) points("home", c.state.homes);
   OneLength maps(file, "/maps");
-  visit_maps(c.state.maps, maps);
+  const auto visit_map = [&](const RunningMap& map, const auto& values) {
+    if (map.of == MapsOf::every_run || !values.empty()) maps(map.name, values);
+  };
+  for_each_running_map(visit_map, c.state.maps);
   visit_contacts(c.state.contacts, OneLength(file, "/contacts"));
   if (c.state.contacts.force.size() % 3 != 0)
     file.refuse(fmt::format("dataset /contacts/force has {} values", c.state.contacts.force.size()),
@@ -312,7 +311,8 @@ void check_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   check_homes(fits, checkpoint.state, scene);
   const std::size_t cells = scene.map.count();
   const auto check_map = [&](const RunningMap& map, const auto& values) {
-    fits.length(map.name, values.size(), map.of_water && scene.water_table.empty() ? 0 : cells);
+    const bool kept = map.of == MapsOf::every_run || (map.of == MapsOf::water_in_pores && !scene.water_table.empty());
+    fits.length(map.name, values.size(), map.of == MapsOf::erosion_by_rate ? scene.erodible.size() : kept ? cells : 0);
   };
   for_each_running_map(check_map, checkpoint.state.maps);
   fits.length("initial_thickness", checkpoint.memory.initial_thickness.size(), cells);

@@ -26,6 +26,24 @@ struct RunMemory {
   RunHistory history;
 };
 
+/// The scalars of the budget; see visit_clock().
+template <class AnyBudget, class Item>
+void visit_budget(AnyBudget& b, Item&& item) {
+  item("keeps_budget", b.is_kept);
+  item("bed_loss", b.bed_loss);
+  item("friction_loss", b.friction_loss);
+  item("drag_loss", b.drag_loss);
+  item("landing_loss", b.landing_loss);
+  item("holding_loss", b.holding_loss);
+  item("damping_loss", b.damping_loss);
+  item("plastic_loss", b.plastic_loss);
+  item("transfer_loss", b.transfer_loss);
+  item("shaking_work", b.shaking_work);
+  item("reaction_x", b.reaction[0]);
+  item("reaction_y", b.reaction[1]);
+  item("reaction_z", b.reaction[2]);
+}
+
 /// This function calls item(name, scalar) for every scalar of a clock, with the names that a checkpoint has for them.
 template <class AnyClock, class Item>
 void visit_clock(AnyClock& c, Item&& item) {
@@ -47,25 +65,15 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("steps_between_sorts", c.sorting.steps_between);
   item("outflow_count", c.outflow.count);
   item("failed_point", c.alarms.failed_point);
-  item("keeps_budget", c.budget.is_kept);
-  item("bed_loss", c.budget.bed_loss);
-  item("friction_loss", c.budget.friction_loss);
-  item("drag_loss", c.budget.drag_loss);
-  item("landing_loss", c.budget.landing_loss);
-  item("holding_loss", c.budget.holding_loss);
-  item("damping_loss", c.budget.damping_loss);
-  item("plastic_loss", c.budget.plastic_loss);
-  item("transfer_loss", c.budget.transfer_loss);
-  item("shaking_work", c.budget.shaking_work);
-  item("reaction_x", c.budget.reaction[0]);
-  item("reaction_y", c.budget.reaction[1]);
-  item("reaction_z", c.budget.reaction[2]);
+  visit_budget(c.budget, item);
   item("accelerated", c.accelerated);
   item("column_spacing", c.motion_maps.column_spacing);
   item("way_unrecorded", c.motion_maps.path_unrecorded);
   item("steps_unrecorded", c.motion_maps.steps_unrecorded);
   item("records_motion", c.motion_maps.is_due);
   item("steps_between_flows", c.water.steps_between);
+  item("flows", c.water.is_due);
+  item("flow_duration", c.water.duration);
   item("last_flow", c.water.last);
   item("shaking_x", c.shaking.acceleration[0]);
   item("shaking_y", c.shaking.acceleration[1]);

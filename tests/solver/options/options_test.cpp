@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "solver/options/erosion.hpp"
 #include "solver/options/implicit.hpp"
 #include "solver/options/inflow.hpp"
 #include "solver/options/loads.hpp"
@@ -52,8 +53,29 @@ TEST(SolveOptions, water_needs_a_mass_that_it_can_be_in) {
   expect_words(water("[solve.base]\npore_pressure_ratio = 0.2"), "twice");
   expect_words(water("[solve]\nmapping = \"cartesian\""), "cartesian");
   expect_words(faults("[solve.water]\ntable_depth_m = 1.0"), "no water flows");
-  expect_words(faults("[solve.water]\nlevel_m = 1.0"), "still water");
-  EXPECT_EQ(faults("[solve]\nintegrator = \"explicit\"\n[solve.water]\nlevel_m = 1.0"), "");
+  expect_words(faults("[solve]\nintegrator = \"newmark\"\n[solve.water]\nlevel_m = 1.0"), "still water");
+  EXPECT_EQ(faults("[solve.water]\nlevel_m = 1.0"), "");
+  const std::string mud = "[solve.material]\nmodel = \"herschel-bulkley\"\nsolid_fraction_exponent = 10.0";
+  EXPECT_EQ(water(mud), "");
+  expect_words(faults(mud), "without water");
+}
+
+TEST(SolveOptions, erosion_by_rate_needs_a_rate_and_steps_of_a_flow) {
+  const std::string by_rate = "[solve.erosion]\nlaw = \"rate\"\n";
+  EXPECT_EQ(faults(by_rate + "rate_per_m = 0.01"), "");
+  expect_words(faults(by_rate), "without rate_per_m");
+  expect_words(faults("[solve.erosion]\nrate_per_m = 0.01"), "without a law");
+  expect_words(faults("[solve]\nintegrator = \"newmark\"\n" + by_rate + "rate_per_m = 0.01"), "of a flow alone");
+}
+
+TEST(SolveOptions, what_only_flows_know_keeps_auto_from_steps_at_rest) {
+  SolveOptions o;
+  EXPECT_FALSE(beyond_rest(o));
+  o.water.level = 10;
+  EXPECT_EQ(beyond_rest(o).key, "[solve.water] level_m");
+  o.water = {};
+  o.erosion.law = ErosionLaw::rate;
+  EXPECT_EQ(beyond_rest(o).key, "[solve.erosion] law = \"rate\"");
 }
 
 TEST(SolveOptions, fines_make_the_fluid_heavier_and_stiffer) {

@@ -107,7 +107,7 @@ TEST(Checkpoint, visits_name_every_member_once) {
     return set.size();
   };
   constexpr std::size_t scalars = clock_scalars<Alarms, StepControl, SubgridVelocity, SortPolicy, Outflow,
-                                                MotionMapPolicy, GroundMotion, EnergyBudget>();
+                                                MotionMapPolicy, WaterPolicy, GroundMotion, EnergyBudget>();
   EXPECT_EQ(names(clock_bits(Clock{})), scalars);
   EXPECT_EQ(clock_bits(Clock{}).size(), scalars);
   RunMemory memory;
