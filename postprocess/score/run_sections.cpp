@@ -98,6 +98,11 @@ void extent(const Scored& scored, Sheet& sheet) {
   extreme("peak_thickness_m", "largest peak thickness", "m", maps.peak_thickness, 2);
   extreme("peak_speed_m_s", "largest peak speed", "m/s", maps.peak_speed, 1);
   extreme("peak_pressure_kpa", "largest peak pressure", "kPa", maps.peak_pressure_kPa, 1);
+  const HistoryColumn* liquefied = scored.run.history.find("liquefied_share");
+  if (!liquefied) return;
+  sheet.number("max_pore_pressure_ratio", "largest share of the load in water", "", largest(maps.peak_pore_pressure),
+               3);
+  sheet.number("max_liquefied_share", "largest share of the mass liquefied", "", largest(liquefied->values), 3);
 }
 
 void intensities(const IntensityMap& map, Sheet& sheet) {

@@ -170,6 +170,17 @@ TEST(Score, warns_of_a_run_that_ended_while_a_hundredth_of_it_moved) {
   EXPECT_TRUE(holds(ended[0].message, {"0.1 %", "480 m3", "2 %", "2.5 m/s", "end time"}));
 }
 
+TEST(Score, names_what_water_carried_where_there_was_any) {
+  Run run = small_run();
+  EXPECT_FALSE(json_of(run, {}).contains("max_liquefied_share"));
+  run.history.columns.push_back(
+      {.name = "liquefied_share", .unit = "1", .quantity = "", .place = "", .values = {0, 0.4, 0.1}});
+  run.maps.peak_pore_pressure = block(small_grid(), 3, 8, 10, 20, 0.9);
+  const nlohmann::json json = json_of(run, {});
+  EXPECT_EQ(json.at("max_liquefied_share"), 0.4);
+  EXPECT_EQ(json.at("max_pore_pressure_ratio"), 0.9);
+}
+
 TEST(Score, measures_residuals_by_the_surveys_error_and_warns_where_it_hides_deposit) {
   auto survey = measured_survey();
   const auto json = json_of(small_run(), survey);

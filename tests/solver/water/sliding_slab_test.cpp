@@ -109,7 +109,7 @@ TEST_P(SlidingSlab, reaches_its_speed_under_still_water) {
   // (rho + C_m rho_w) dv/dt = b - C rho_w v^2 / (2 h), b the weight under water that friction leaves, has the solution
   // v = v_t tanh(b t / ((rho + C_m rho_w) v_t)), v_t^2 = 2 b h / (C rho_w).
   const Slab s{10, 5, -1};
-  constexpr double density = 2000, water = 1000, moved = 0.5, drag = 0.2, time = 15;
+  constexpr double density = 2000, water = 1000, moved = 0.5, drag = 0.2, time = 8;
   const double thick = depth * std::cos(s.slope * degree),
                b = (density - water) / 9.81 * 9.81 * sliding_acceleration(s.slope, s.friction),
                fastest = std::sqrt(2 * b * thick / (drag * water)), scale = (density + moved * water) * fastest / b,
