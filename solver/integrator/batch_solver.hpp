@@ -68,7 +68,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     clock_.lend();
     clock_.pass_in();
-    recording_.repeat(steps_ahead(clock), [&] { step(); });
+    recording_.repeat(loads_.grow_at(clock.time) ? 1 : steps_ahead(clock), [&] { step(); });
     for_each(device_, 1, CloseBatch{clock_.data()});
     clock_.pass_out();
     BatchReport report;

@@ -4,6 +4,7 @@
 // step by the clock and ends a batch.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -57,6 +58,12 @@ class DeviceLoads {
     if (volumes_.empty()) return nullptr;
     densities_.upload(load_densities(loads_, volumes_, begin, time));
     return densities_.data();
+  }
+  /// Whether a load grows from a time on: every step asks for its own.
+  bool grow_at(double time) const {
+    return !volumes_.empty() && std::ranges::any_of(loads_, [&](const LoadOptions& l) {
+      return l.ramp > 0 && time >= l.from && time < l.from + l.ramp;
+    });
   }
   /// Whether a load jumps at a time.
   bool jump_at(double time) const { return loads_jump(loads_, volumes_, time); }

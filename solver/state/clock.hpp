@@ -88,7 +88,7 @@ struct WaterPolicy {
   double last = 0;        ///< time at which it flowed last [s]
   double duration = 0;    ///< for which it flows now [s]
 };
-inline constexpr int steps_between_flows = 4;
+inline constexpr int steps_between_flows = 8;
 
 /// Motion of the ground (T42).
 struct GroundMotion {

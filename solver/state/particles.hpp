@@ -81,6 +81,8 @@ enum class Kept {
   FIELD(water_strength,     Reals, 1, "1",     water,             in_checkpoint, 1)                \
   /* rate at which water adds to ln(volume) */                                                     \
   FIELD(water_inflow,       Reals, 1, "1/s",   water,             in_checkpoint, 0)                \
+  /* what of ln(volume) water was to add at the last step with it */                               \
+  FIELD(water_due,          Reals, 1, "1",     water,             in_checkpoint, 0)                \
   /* plastic_shear at the last step with water */                                                  \
   FIELD(shear_seen,         Reals, 1, "1",     water,             in_checkpoint, 0)
 // clang-format on

@@ -172,6 +172,7 @@ struct FlowAlongColumns : WaterStep<Real> {
     Top top;
     WaterCell<Real> above, own = cell(at, column, at.end() - 1);
     Real pivot = 1, right = 0;
+    Real rest = 0;  // of the pivot without what goes downwards: no differences of large numbers
     for (int k = at.end() - 1; k >= at.begin(); --k) {
       const WaterCell<Real> below = cell(at, column, k - 1);
       if (!own.wet()) top.depth = Real(0);
@@ -182,10 +183,11 @@ struct FlowAlongColumns : WaterStep<Real> {
                    down = below.to(own, column.duration, k == 1 && !water.drained_bed);
         const bool alone = !above.wet() && !below.wet();
         const Real handed = up / pivot;
-        Real open = 0;
+        Real open = handed * rest;
         if (!above.wet() && !water.sealed_surface) open += to_face(own, column, alone);
         if (k == 0 && water.drained_bed) open += to_face(own, column, alone);
-        pivot = store + up + down + open - up * handed;
+        rest = store + open;
+        pivot = rest + down;
         right = store * start + handed * right;
         answers[at.node(k)] = {pivot, right, down, start};
       }

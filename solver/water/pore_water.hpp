@@ -83,12 +83,13 @@ struct PoreWater {
     return {solid - critical * over, Real(-0.5) * critical * root * over * over / load};
   }
   /// The effective stress after a shear of `shear` at a rate [1/s] that lets no water in or out, (T50e) [Pa]: stiffness
-  /// grows with the stress, so that it goes exponentially. Implicit in the dilatancy.
+  /// grows with the stress, so that it goes exponentially. Implicit in the dilatancy. It grows by e at most: what lies
+  /// thin shears without end, and its suction ends soon after.
   TALUS_HD Real sheared(Real solid, Real effective, Real shear, Real rate) const {
     const Dilatancy<Real> d = dilatancy(solid, effective, rate);
     const Real share = solid * shear / compressibility, from = effective + reference;
     const Real way = share * d.tangent / (Real(1) - share * from * d.slope);
-    const Real to = from * Real(exp(way < Real(20) ? way : Real(20))) - reference;
+    const Real to = from * Real(exp(way < Real(1) ? way : Real(1))) - reference;
     return to > Real(0) ? to : Real(0);
   }
   /// The strength by friction of grains under this load across the bed [Pa] that bear `effective`, as

@@ -23,6 +23,7 @@ struct WaterToPoints : WaterStep<Real> {
   const float* table;  ///< depth of the water table at the start, normal to the bed, [rows * columns] [m]
   Real ratio;          ///< of the pressure to the load at the start; negative: hydrostatic
   Real density;        ///< of the mass [kg/m3]
+  Real softness;       ///< strain of the stiffest undrained mass across the bed by a stress [1/Pa]
   bool at_once;
 
   TALUS_HD void operator()(int p) const {
@@ -31,6 +32,7 @@ struct WaterToPoints : WaterStep<Real> {
     const CellAnswer<Real> answer = gather(at, points.offset[2][p]);
     if (!(answer.load > Real(0))) {
       points.water_strength[p] = Real(1);
+      points.water_due[p] = points.water_inflow[p] = Real(0);
       return;
     }
     Real effective = points.effective_stress[p];
@@ -40,7 +42,7 @@ struct WaterToPoints : WaterStep<Real> {
       effective += answer.change;
       const Real most = Real(2) * answer.load + water.suction;  // more is air, which a load has to press out again
       effective = effective > Real(0) ? (effective < most ? effective : most) : Real(0);
-      take_in(p, at.normal, answer.inflow);
+      take_in(p, at.normal, answer);
     }
     points.effective_stress[p] = effective;
     if (effective < Real(0)) return;
@@ -69,8 +71,8 @@ struct WaterToPoints : WaterStep<Real> {
         if (at.k + beside >= 0) next = CellAnswer<Real>(answers[n + beside * block_columns]);
       }
       const Real apart = Real(beside) * (next.middle - own.middle) + Real(1);
-      const Real part =
-          next.load > Real(0) && apart > Real(0.25) ? Real(beside) * (offset - own.middle) / apart : Real(0);
+      Real part = next.load > Real(0) && apart > Real(0.25) ? Real(beside) * (offset - own.middle) / apart : Real(0);
+      if (part < Real(-0.5)) part = Real(-0.5);
       const Real weight = at.weight(q), a = weight * (Real(1) - part), b = weight * part;
       sum.load += own.load * a + next.load * b;
       sum.change += own.change * a + next.change * b;
@@ -95,10 +97,15 @@ struct WaterToPoints : WaterStep<Real> {
     return pressure < load ? load - pressure : Real(0);
   }
 
-  TALUS_HD void take_in(int p, const Vec3<Real>& normal, Real strain) const {
-    const Real duration = Real(clock->water.duration);
+  /// The method lets the point take what water brings, in steps of a flow no more at a time than raises its stress by
+  /// the load: what lies thin drains at once, and the stiffness of an undrained mass would throw it.
+  TALUS_HD void take_in(int p, const Vec3<Real>& normal, const CellAnswer<Real>& answer) const {
+    const Real strain = answer.inflow, duration = Real(clock->water.duration);
     if (!at_once) {
-      points.water_inflow[p] = duration > Real(0) ? strain / duration : Real(0);
+      const Real most = answer.load * softness, due = points.water_due[p] - points.water_inflow[p] * duration + strain;
+      const Real now = due < -most ? -most : due > most ? most : due;
+      points.water_inflow[p] = duration > Real(0) ? now / duration : Real(0);
+      points.water_due[p] = due;
       return;
     }
     MaterialState<Real> state{points.elastic_of(p), points.log_volume[p], points.plastic_log_volume[p]};
@@ -113,6 +120,7 @@ struct FirstWater {
   std::vector<float> table;  ///< depth of the water table, normal to the bed, [rows * columns] [m]
   double ratio = -1;         ///< of the pressure to the load; negative: hydrostatic
   double density = 0;        ///< of the mass [kg/m3]
+  double stiffness = 1;      ///< of the stiffest material across the bed, undrained [Pa]
 };
 
 /// The water of a run on a device; nothing where there is none.
@@ -128,6 +136,7 @@ class WaterColumns {
     water_ = water->as<Real>();
     ratio_ = static_cast<Real>(first.ratio);
     density_ = static_cast<Real>(first.density);
+    softness_ = static_cast<Real>(1 / first.stiffness);
     table_.upload(first.table);
     weights_.resize_zeroed(first.table.size());
   }
@@ -166,14 +175,14 @@ class WaterColumns {
              FlowAlongColumns<Real>{step, grid.active_list(), density_, cells_.data(), answers_.data(), around.nodes,
                                     weights_.data(), around.maps});
     for_each(device_, points.count,
-             WaterToPoints<Real, Shape>{step, answers_.data(), table_.data(), ratio_, density_, at_once_});
+             WaterToPoints<Real, Shape>{step, answers_.data(), table_.data(), ratio_, density_, softness_, at_once_});
   }
 
  private:
   Device device_;
   bool on_ = false;
   PoreWater<Real> water_;
-  Real ratio_ = -1, density_ = 0;
+  Real ratio_ = -1, density_ = 0, softness_ = 0;
   Buffer<Vec4<Real>, Device> cells_, answers_;
   Buffer<Real, Device> weights_;
   Buffer<float, Device> table_;
