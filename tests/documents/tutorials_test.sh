@@ -27,6 +27,7 @@ test_first_run() { run_tutorial first-run first-run-map.png first-run-report.png
 test_your_own_slide() { run_tutorial your-own-slide your-own-slide-map.png; }
 test_friction() { run_tutorial friction friction-weakening.png; }
 test_slope_that_may_fail() { run_tutorial slope-that-may-fail slope-critical.png slope-run.png; }
+test_loose_or_dense() { run_tutorial loose-or-dense wet-slide-loose.png wet-slide-dense.png; }
 test_next_slide() { run_tutorial next-slide posterior.png next-slide.png; }
 test_impact() { run_tutorial impact impact-map.png impact-force.png; }
 test_how_far() { run_tutorial how-far how-far-run-out.png; }
