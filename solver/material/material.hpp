@@ -67,7 +67,7 @@ TALUS_HD Material<Real, Laws> softened(Material<Real, Laws> m, Real plastic_shea
   return m;
 }
 
-/// Gives a material the strength that water leaves it: by friction (T50g; ParticleState::water_strength), or of mud
+/// Gives a material the strength that water leaves it: by friction (T50g), or of mud
 /// which has taken in so much water, as ln of the volume (T28a).
 template <class Real, class Laws>
 TALUS_HD void wet(Material<Real, Laws>& m, Real strength, Real log_volume) {
