@@ -171,7 +171,7 @@ TEST(Score, warns_of_a_run_that_ended_while_a_hundredth_of_it_moved) {
 }
 
 TEST(Score, names_what_water_carried_where_there_was_any) {
-  Run run = small_run();
+  auto run = small_run();
   EXPECT_FALSE(json_of(run, {}).contains("max_liquefied_share"));
   run.history.columns.push_back(
       {.name = "liquefied_share", .unit = "1", .quantity = "", .place = "", .values = {0, 0.4, 0.1}});
