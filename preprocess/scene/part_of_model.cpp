@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/map/statistics.hpp"
 #include "common/stage/findings.hpp"
 #include "preprocess/terrain/reach.hpp"
 #include "preprocess/terrain/working_grid.hpp"
