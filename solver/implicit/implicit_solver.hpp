@@ -28,6 +28,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
         step_(parts(), DeviceBed<double, Device>(device, settings.bed, scene.bed, maps_.view().grains_share)),
         length_(controls.step, controls.newton_iterations) {
     this->fit(0);
+    this->meet_water();
   }
 
   /// The method makes one step, or a part of one where it had to be cut; see Solver::advance(). It throws
@@ -67,7 +68,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     points_.append(points);
     this->fit(0);
     Clock clock = clock_.read();
-    this->note_rate(clock, rate);
+    this->note_points(clock, rate);
     clock_.write(clock);
   }
 
@@ -162,18 +163,12 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
     }
   }
 
-  /// The method lets water flow as long as the step before has taken, under all of gravity: statics that load it in one
-  /// step would begin without any.
+  /// The method lets water flow as long as the step before has taken.
   void let_water_flow(Clock& clock) {
     if (!this->water_.on()) return;
-    clock.flow_water();
     clock_.write(clock);
-    clock_.hand_over();
-    // The first time tells the points what they bear, the second one the bed.
-    for (int n = clock.step == 0 ? 2 : 1; n > 0; --n)
-      this->flow_water({.full = this->gravity().full}, loads_.upload(clock.time, clock.time), nullptr);
-    clock.water.is_due = 0;
-    clock_.write(clock);
+    this->flow_at_once(loads_.upload(clock.time, clock.time));
+    clock = clock_.read();
   }
 
   void accept(const Clock& clock, double step) {

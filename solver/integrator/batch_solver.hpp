@@ -68,7 +68,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     clock_.lend();
     clock_.pass_in();
-    recording_.repeat(loads_.grow_at(clock.time) ? 1 : steps_ahead(clock), [&] { step(); });
+    start_steps(clock, loads_.grow_at(clock.time) ? 1 : steps_ahead(clock));
     for_each(device_, 1, CloseBatch{clock_.data()});
     clock_.pass_out();
     BatchReport report;
@@ -114,7 +114,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     Clock clock = clock_.read();
     sort(0);
     clock.sorting = {.steps_since = 0, .steps_between = steps_between_sorts()};
-    this->note_rate(clock, rate);
+    this->note_points(clock, rate);
     clock_.write(clock);
   }
 
@@ -139,10 +139,11 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     clock.sorting.steps_between = steps_between_sorts();
     if (state.homes.empty()) clock.outflow = {};  // a sort drops those who have left
     clock_.write(clock);
-    if (Device::is_gpu || state.homes.empty()) return sort(0);
-    points_.upload(at_home(state, grid_.shape().columns));
+    const bool as_sorted = Device::is_gpu || state.homes.empty();
+    if (!as_sorted) points_.upload(at_home(state, grid_.shape().columns));
     sort(0);
-    points_.upload(state.points);
+    if (!as_sorted) points_.upload(state.points);
+    this->meet_water();
   }
 
   /// The method scatters the points' mass and momentum, with forces to their own array where it asks for them.
@@ -167,7 +168,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   template <class Inertia, class UpdateNodes>
   void update(Vec4<Real>* changes, const Inertia& inertia, const UpdateNodes& update_nodes) {
     const StepNodes<Real> at = step_nodes(changes);
-    this->flow_water(this->gravity(), loads_now_, nodes_.data());
+    if (flows_) this->flow_water(this->gravity(), loads_now_, nodes_.data());
     this->measure_columns();
     this->sum_motion(clock_.data());
     columns_.measure(at, surroundings_.bed());
@@ -244,6 +245,20 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     this->measure_columns();
     this->sum_motion(clock);
     this->record_motion();
+  }
+
+  /// The method gives the device so many steps. Those in which water flows have kernels that the others go without.
+  void start_steps(const Clock& clock, int count) {
+    for (int n = 0; n < count; ++n) {
+      int still = 0;
+      while (n + still < count && !clock.water.flows_after(clock.step + n + still)) ++still;
+      recording_.repeat(still, [&] { step(); });
+      n += still;
+      if (n == count) return;
+      flows_ = true;
+      step();
+      flows_ = false;
+    }
   }
 
   /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
@@ -327,6 +342,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
 
   Recording<Device> recording_;  ///< of a step
   int expected_ = 32;            ///< steps between sorts
+  bool flows_ = false;           ///< water does, in the step that is being started
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   ColumnContact<Real, Device> columns_;

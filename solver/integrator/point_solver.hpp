@@ -111,6 +111,28 @@ class PointSolver : public Solver {
     water_.flow(points_.view(), materials_, grid_, {clock_.data(), gravity, loads, nodes, submersion(), maps_.view()});
   }
 
+  /// The method lets water flow for no time as a run begins, under all of its gravity: the first time tells the points
+  /// what they bear, the second one the bed.
+  void meet_water() {
+    const Clock clock = clock_.read();
+    if (!water_.on() || clock.step > 0) return;
+    set_walls<Real>(clock.time);
+    const Vec3<double>* const loads = loads_.upload(clock.time, clock.time);
+    for (int time = 0; time < 2; ++time) flow_at_once(loads);
+  }
+  /// The method lets water flow outside a batch of steps, for the time since it flowed last and under all of gravity:
+  /// statics that load the mass in one step would begin without any.
+  void flow_at_once(const Vec3<double>* loads) {
+    Clock clock = clock_.read();
+    clock.flow_water();
+    clock_.write(clock);
+    clock_.hand_over();
+    flow_water({.full = gravity().full}, loads, nullptr);
+    clock = clock_.read();
+    clock.water.is_due = 0;
+    clock_.write(clock);
+  }
+
   /// The density of what lies over each column, as it was measured last.
   ColumnDensity<Real> column_density() const { return {materials_.list[0].density, measures_.column_volumes()}; }
   /// The method sums up the motion of the points as they are over the columns, whenever the clock says so, or at once
@@ -144,7 +166,8 @@ class PointSolver : public Solver {
            shape.layer_height;
   }
   /// The method takes account of points that have come with this `rate` [1/s].
-  static void note_rate(Clock& clock, double rate) {
+  static void note_points(Clock& clock, double rate) {
+    clock.water.add_points(clock.step);
     atomic_max_positive(&clock.control.rate_bits, static_cast<float>(rate));
     clock.alarms.halt = clock.alarms.request = running;
   }

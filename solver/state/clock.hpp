@@ -83,10 +83,24 @@ struct MotionMapPolicy {
 
 /// Intervals at which water flows between the grains (T50): it goes slowly beside waves.
 struct WaterPolicy {
-  int steps_between = 0;  ///< 0: there is no water
-  int is_due = 0;         ///< read by kernels: water flows in this step
-  double last = 0;        ///< time at which it flowed last [s]
-  double duration = 0;    ///< for which it flows now [s]
+  int steps_between = 0;         ///< 0: there is no water
+  int is_due = 0;                ///< read by kernels: water flows in this step
+  std::int64_t every_until = 0;  ///< it flows in every step before this one, for points that have come
+  double last = 0;               ///< time at which it flowed last [s]
+  double duration = 0;           ///< for which it flows now [s]
+  double depths = 0;             ///< sum over the columns at the last flow, in whole parts of a layer
+  double liquefied = 0;          ///< the same of those on whose bed grains bear less than a tenth of the load
+
+  /// The share of the mass that is liquefied [-].
+  double liquefied_share() const { return depths > 0 ? liquefied / depths : 0; }
+
+  /// Whether water flows in the step after so many.
+  TALUS_HD bool flows_after(std::int64_t steps) const {
+    return steps_between > 0 && (steps % steps_between == 0 || steps < every_until);
+  }
+  /// The method takes account of points that come after so many steps: the first flow tells them what they bear, the
+  /// second one the bed.
+  void add_points(std::int64_t steps) { every_until = steps + 2; }
 };
 inline constexpr int steps_between_flows = 8;
 
@@ -148,7 +162,7 @@ struct Clock {
     if (alarms.halt != running) return;
     if (motion_maps.path_unrecorded >= way_between_records || motion_maps.steps_unrecorded >= steps_between_records)
       record_motion();
-    if (water.steps_between > 0 && step % water.steps_between == 0) flow_water();
+    if (water.flows_after(step)) flow_water();
     const double longest = full_step(), remaining = next_event - time;
     if (longest >= remaining) {
       step_size = remaining;
@@ -188,6 +202,7 @@ struct Clock {
     water.is_due = 1;
     water.duration = time - water.last;
     water.last = time;
+    water.depths = water.liquefied = 0;
   }
 
   /// The method lets kernels record the maps of speed and pressure from the points as they are.

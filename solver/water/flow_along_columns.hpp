@@ -15,26 +15,23 @@ struct WaterCell {
   Real weight = 0;     ///< across the bed, dry points too [N]
   Real depth = 0;      ///< of what has water, normal to the bed [m]
   Real effective = 0;  ///< stress [Pa]
-  Real given = 0;      ///< the same as the points gave it, before the slip over the bed [Pa]
+  Real solid = 0;      ///< solid fraction [-]
   Real stiffness = 1;  ///< of the skeleton [Pa]
   Real mobility = 0;   ///< k / mu_f [m2/(Pa s)]
-  Real solid = 0;      ///< solid fraction [-]
   TALUS_HD bool wet() const { return depth > Real(0); }
 
   WaterCell() = default;
+  /// Of the sums that points left.
   TALUS_HD WaterCell(const PoreWater<Real>& water, const Vec4<Real>& sums, Real area) : weight(sums.w) {
     if (!(sums.x > Real(0))) return;
     depth = sums.x / area;
-    effective = given = sums.y / sums.x;
+    effective = sums.y / sums.x;
     solid = water.solid_at(sums.z / sums.x);
-    stiffness = water.stiffness(solid, effective);
-    mobility = water.mobility(solid);
   }
-  /// The method shears the cell for a time [s] at a rate [1/s] without flow (T50e).
-  TALUS_HD void shear(const PoreWater<Real>& water, Real rate, Real duration) {
-    effective = water.sheared(solid, effective, rate * duration, rate);
-    stiffness = water.stiffness(solid, effective);
-  }
+  /// As kept() left it, without stiffness and mobility.
+  TALUS_HD explicit WaterCell(const Vec4<Real>& kept)
+      : weight(kept.w), depth(kept.x), effective(kept.y), solid(kept.z) {}
+  TALUS_HD Vec4<Real> kept() const { return {weight, depth, effective, solid}; }
   /// The conductance to the cell above for a step of `duration`, as a depth over a stiffness; 0 where either is dry. On
   /// a `sealed` bed that of the parabola through both cells that is level there: the face is nearer to the lower one.
   TALUS_HD Real to(const WaterCell& above, Real duration, bool sealed) const {
@@ -86,7 +83,7 @@ struct FlowAlongColumns : WaterStep<Real> {
   const int* active;
   Real density;  ///< of the mass [kg/m3]
   Vec4<Real>* cells;
-  Vec4<Real>* answers;      ///< CellAnswer of every cell; on the way up the pivots of the elimination
+  Vec4<Real>* answers;      ///< CellAnswer of every cell; in between what substitute() needs of eliminate()
   const Vec4<Real>* nodes;  ///< mass and momentum of the step's nodes; null: the bed's slip is not known
   const Real* weights;      ///< of all columns, [rows * columns] [N]
   MapView maps;
@@ -152,7 +149,11 @@ struct FlowAlongColumns : WaterStep<Real> {
   TALUS_HD WaterCell<Real> cell(const ColumnNodes& at, const Column& column, int k) const {
     if (k < at.begin() || k >= at.end()) return {};
     WaterCell<Real> own{water, cells[at.node(k)], column.area};
-    if (own.wet() && column.shear > Real(0)) own.shear(water, column.shear, column.duration);
+    if (!own.wet()) return own;
+    if (column.shear > Real(0))  // without flow (T50e)
+      own.effective = water.sheared(own.solid, own.effective, column.shear * column.duration, column.shear);
+    own.stiffness = water.stiffness(own.solid, own.effective);
+    own.mobility = water.mobility(own.solid);
     return own;
   }
   /// The pressure in a cell under a load [Pa]; what is sucked beyond `suction` is air.
@@ -167,7 +168,9 @@ struct FlowAlongColumns : WaterStep<Real> {
            (alone ? (water.drained_bed && !water.sealed_surface ? two_ways : one_way) : Real(2));
   }
 
-  /// The method eliminates from the top, and leaves pivot, right side, conductance downwards and pressure at the start.
+  /// The method eliminates from the top. It leaves the cells as kept() gives them and, in their answers, the change of
+  /// the effective stress by shear, the pressure at the end without that of the cell below, the share of that in it,
+  /// and the pressure at the start.
   TALUS_HD Top eliminate(const ColumnNodes& at, const Column& column) const {
     Top top;
     WaterCell<Real> above, own = cell(at, column, at.end() - 1);
@@ -189,8 +192,10 @@ struct FlowAlongColumns : WaterStep<Real> {
         rest = store + open;
         pivot = rest + down;
         right = store * start + handed * right;
-        answers[at.node(k)] = {pivot, right, down, start};
+        const Vec4<Real> sums = cells[at.node(k)];
+        answers[at.node(k)] = {own.effective - sums.y / sums.x, right / pivot, down / pivot, start};
       }
+      cells[at.node(k)] = own.kept();
       top.weight += own.weight;
       top.depth += own.depth;
       above = own;
@@ -236,7 +241,7 @@ struct FlowAlongColumns : WaterStep<Real> {
     Real below = 0;  // excess pressure of the cell below [Pa]
     for (int k = at.begin(); k < at.end(); ++k) {
       const int n = at.node(k);
-      const WaterCell<Real> own = cell(at, column, k);
+      const WaterCell<Real> own(cells[n]);
       cells[n] = {};
       top.weight -= own.weight;
       const Real load = load_on(own, column, top);
@@ -247,19 +252,27 @@ struct FlowAlongColumns : WaterStep<Real> {
       }
       const Vec4<Real> kept = answers[n];
       const Real start = kept.z, hydrostatic = pressure_of(own, load) - start, most = load - hydrostatic;
-      const Real ended = (kept.x + kept.y * below) / kept.w;
+      const Real ended = kept.x + kept.y * below;
       below = ended < most ? ended : most;
       if (k == 0) foot.over = hydrostatic + Real(0.5) * column.water * own.depth;
       if (k == 0 || foot.count > 0) foot.add(below, own.depth);
       const Real change = below - start;
       const Real after = own.effective - change, inflow = -water.strain(own.solid, own.effective, after);
-      answers[n] = {load, after - own.given, inflow, middle_of(own, column, k)};
+      answers[n] = {load, after - own.effective + kept.w, inflow, middle_of(own, column, k)};
     }
     const Real excess = foot.count == 0 || water.drained_bed ? Real(0) : foot.at_bed();
     const Real borne = foot.count == 0 ? Real(1) : water.strength_share(load_on_bed, load_on_bed - excess - foot.over);
     record(at.column, load_on_bed, borne, excess);
+    count(load_on_bed / (column.mass * column.layer), borne);
   }
 
+  /// The method counts a column [layers] for the share that is liquefied. Sums of whole numbers know no order.
+  TALUS_HD void count(Real layers, Real borne) const {
+    constexpr double parts = 1000, liquefied = 0.1;
+    const double depth = floor(static_cast<double>(layers) * parts);
+    atomic_add(&clock->water.depths, depth);
+    if (static_cast<double>(borne) < liquefied) atomic_add(&clock->water.liquefied, depth);
+  }
   /// The method records what water does at the bed of a column, of a load on it and of the excess [Pa].
   TALUS_HD void record(int column, Real load, Real borne, Real excess) const {
     constexpr double noticed = 0.1;

@@ -23,7 +23,7 @@ struct WaterToPoints : WaterStep<Real> {
   const float* table;  ///< depth of the water table at the start, normal to the bed, [rows * columns] [m]
   Real ratio;          ///< of the pressure to the load at the start; negative: hydrostatic
   Real density;        ///< of the mass [kg/m3]
-  Real softness;       ///< strain of the stiffest undrained mass across the bed by a stress [1/Pa]
+  Real stiffness;      ///< of the stiffest undrained mass across the bed [Pa]
   bool at_once;
 
   TALUS_HD void operator()(int p) const {
@@ -102,7 +102,7 @@ struct WaterToPoints : WaterStep<Real> {
   TALUS_HD void take_in(int p, const Vec3<Real>& normal, const CellAnswer<Real>& answer) const {
     const Real strain = answer.inflow, duration = Real(clock->water.duration);
     if (!at_once) {
-      const Real most = answer.load * softness, due = points.water_due[p] - points.water_inflow[p] * duration + strain;
+      const Real most = answer.load / stiffness, due = points.water_due[p] - points.water_inflow[p] * duration + strain;
       const Real now = due < -most ? -most : due > most ? most : due;
       points.water_inflow[p] = duration > Real(0) ? now / duration : Real(0);
       points.water_due[p] = due;
@@ -130,13 +130,16 @@ class WaterColumns {
   /// The constructor takes the water, how it stands at the start, and whether steps take what it brings `at_once`.
   WaterColumns(const Device& device, const std::optional<PoreWater<double>>& water, const FirstWater& first,
                bool at_once)
-      : device_(device), cells_(device), answers_(device), weights_(device), table_(device), at_once_(at_once) {
+      : device_(device),
+        first_{{}, first.ratio, first.density, first.stiffness},
+        cells_(device),
+        answers_(device),
+        weights_(device),
+        table_(device),
+        at_once_(at_once) {
     if (!water) return;
     on_ = true;
     water_ = water->as<Real>();
-    ratio_ = static_cast<Real>(first.ratio);
-    density_ = static_cast<Real>(first.density);
-    softness_ = static_cast<Real>(1 / first.stiffness);
     table_.upload(first.table);
     weights_.resize_zeroed(first.table.size());
   }
@@ -153,7 +156,7 @@ class WaterColumns {
   /// What flows ask for besides the points: the clock, gravity, loads (null: none), mass and momentum of the nodes
   /// (null: the slip is not known), and still water.
   struct Around {
-    const Clock* clock;
+    Clock* clock;
     Gravity<Real> gravity;
     const Vec3<double>* loads;
     const Vec4<Real>* nodes;
@@ -172,17 +175,19 @@ class WaterColumns {
     scatter_points(device_, points.count, grid.groups(), WaterToCells<Real, Shape>{step, materials, cells_.data()});
     for_each(device_, columns, WeighColumns<Real>{step, grid.active_list(), cells_.data(), weights_.data()});
     for_each(device_, columns,
-             FlowAlongColumns<Real>{step, grid.active_list(), density_, cells_.data(), answers_.data(), around.nodes,
-                                    weights_.data(), around.maps});
-    for_each(device_, points.count,
-             WaterToPoints<Real, Shape>{step, answers_.data(), table_.data(), ratio_, density_, softness_, at_once_});
+             FlowAlongColumns<Real>{step, grid.active_list(), static_cast<Real>(first_.density), cells_.data(),
+                                    answers_.data(), around.nodes, weights_.data(), around.maps});
+    for_each(
+        device_, points.count,
+        WaterToPoints<Real, Shape>{step, answers_.data(), table_.data(), static_cast<Real>(first_.ratio),
+                                   static_cast<Real>(first_.density), static_cast<Real>(first_.stiffness), at_once_});
   }
 
  private:
   Device device_;
   bool on_ = false;
   PoreWater<Real> water_;
-  Real ratio_ = -1, density_ = 0, softness_ = 0;
+  FirstWater first_;  ///< its table is on the device
   Buffer<Vec4<Real>, Device> cells_, answers_;
   Buffer<Real, Device> weights_;
   Buffer<float, Device> table_;

@@ -17,7 +17,7 @@ template <class Real>
 struct WaterStep {
   GridView<Real> grid;
   ParticleView<Real> points;
-  const Clock* clock;  ///< says whether the step has to do with water at all
+  Clock* clock;  ///< says whether the step has to do with water at all
   Gravity<Real> gravity;
   const Vec3<double>* loads;  ///< force per volume of each load [N/m3]; null without loads
   Submersion<Real> submersion;

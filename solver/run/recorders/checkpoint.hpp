@@ -73,8 +73,11 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("records_motion", c.motion_maps.is_due);
   item("steps_between_flows", c.water.steps_between);
   item("flows", c.water.is_due);
+  item("flows_each_step_until", c.water.every_until);
   item("flow_duration", c.water.duration);
   item("last_flow", c.water.last);
+  item("depths", c.water.depths);
+  item("liquefied_depths", c.water.liquefied);
   item("shaking_x", c.shaking.acceleration[0]);
   item("shaking_y", c.shaking.acceleration[1]);
   item("shaking_z", c.shaking.acceleration[2]);

@@ -82,22 +82,8 @@ constexpr Column<Packing> packing_columns[] = {
     {"packing_max", "1", [](const Packing& p) { return p.largest; }},
 };
 
-/// The share of the ground under the mass, by thickness, on which grains bear less than a tenth of the load [-].
-struct Liquefied {
-  double share = 0;
-  explicit Liquefied(Solver& solver) {
-    const std::vector<double> thickness = solver.thickness(), borne = solver.grains_share();
-    double all = 0;
-    for (std::size_t c = 0; c < thickness.size(); ++c) {
-      all += thickness[c];
-      if (borne[c] < 0.1) share += thickness[c];
-    }
-    if (all > 0) share /= all;
-  }
-};
-
-constexpr Column<Liquefied> water_columns[] = {
-    {"liquefied_share", "1", [](const Liquefied& l) { return l.share; }},
+constexpr Column<Instant> water_columns[] = {
+    {"liquefied_share", "1", [](const Instant& i) { return i.clock.water.liquefied_share(); }},
 };
 
 /// A recorder of the whole run, of the numbers that `measure` takes at a record, which a run may be judged by.
@@ -105,16 +91,15 @@ template <class Sample>
 class RunRecorder : public TableRecorder<Sample> {
  public:
   using Measure = std::function<Sample(const Instant&)>;
-  RunRecorder(std::span<const Column<Sample>> table, Measure measure, bool judges = true)
-      : TableRecorder<Sample>(table, {Place{}}), measure_(std::move(measure)), judges_(judges) {}
-  bool judges() const override { return judges_; }
+  RunRecorder(std::span<const Column<Sample>> table, Measure measure)
+      : TableRecorder<Sample>(table, {Place{}}), measure_(std::move(measure)) {}
+  bool judges() const override { return true; }
 
  protected:
   std::vector<Sample> samples(const Instant& now) const override { return {measure_(now)}; }
 
  private:
   Measure measure_;
-  bool judges_;
 };
 
 /// This function makes every recorder that the recipe asks for, in the order of their columns.
@@ -138,9 +123,7 @@ std::vector<std::unique_ptr<Recorder>> make_recorders(const SolveOptions& option
     add_of_run(shaking_columns);
     if (options.energy_budget) add_of_run(shaking_budget_columns);
   }
-  if (options.water.flows())
-    recorders.push_back(std::make_unique<RunRecorder<Liquefied>>(
-        water_columns, [](const Instant& now) { return Liquefied(now.solver); }, false));
+  if (options.water.flows()) add_of_run(water_columns);
   if (!options.obstacles.empty()) recorders.push_back(std::make_unique<ObstacleRecorder>(options));
   if (!options.gauges.empty()) recorders.push_back(std::make_unique<GaugeRecorder>(options, scene));
   if (!options.sections.empty()) recorders.push_back(std::make_unique<SectionRecorder>(options, scene));

@@ -62,13 +62,19 @@ TEST(PoreWaterFormulas, strength_ends_at_none_and_at_the_suction) {
 
 TEST(WaterCells, pass_water_on_by_their_depth_and_permeability) {
   const PoreWater<double> water = sample();
-  const WaterCell<double> one(water, {100, 2, 2 * 1e4, 0}, 4), dry;
+  const auto cell_of = [&](const Vec4<double>& sums) {
+    WaterCell<double> cell(water, sums, 4);
+    cell.mobility = water.mobility(cell.solid);
+    return cell;
+  };
+  const WaterCell<double> one = cell_of({100, 2, 2 * 1e4, 0}), dry;
+  EXPECT_GT(one.mobility, 0);
   EXPECT_EQ(one.depth, 0.5);
   EXPECT_EQ(one.effective, 1e4);
   EXPECT_NEAR(one.to(one, 3, false), 3 * one.mobility / 0.5, 1e-15);
   EXPECT_EQ(one.to(dry, 3, false), 0);
   // On the parabola p_0 - z^2 the flux at the face is exact.
-  const WaterCell<double> low(water, {100, 1, 1e4, 0}, 4);
+  const WaterCell<double> low = cell_of({100, 1, 1e4, 0});
   const double a = low.depth, b = a + one.depth, mean = a * a / 3, next = (b * b * b - a * a * a) / (3 * one.depth);
   EXPECT_NEAR(low.to(one, 1, true) * (next - mean), 2 * a * low.mobility, 1e-12 * low.mobility);
 }
