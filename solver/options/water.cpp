@@ -114,8 +114,10 @@ void WaterOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.number("viscosity_Pa_s", viscosity, recipe::positive, "viscosity of the fluid without fines");
   v.number("fines", fines, Range{0, 0.5},
            "share of the fluid's volume that is fine grains, which make it heavier and stiffer");
-  v.number("suction_Pa", suction, recipe::not_negative,
-           "largest suction that adds to the strength; beyond it air comes in");
+  v.number(
+      "suction_Pa", suction, recipe::not_negative,
+      "largest suction, at which air comes in: it adds to the strength of a mass that dilates or lacks water at its "
+      "surface");
   const auto side = [&](const char* key, Drainage& value, const char* help) {
     recipe::choice(v, key, value, {{"drained", Drainage::drained}, {"sealed", Drainage::sealed}}, help);
   };
@@ -146,15 +148,18 @@ std::optional<PoreWater<double>> make_water(const SolveOptions& options) {
   const WaterOptions& w = options.water;
   if (!w.flows()) return {};
   const double density = options.material.density, d = w.grain_diameter.value_or(0);
+  const double pores = 1 - w.solid_fraction, permeability = w.permeability_at_start(),
+               grains = std::sqrt(180 * permeability / (pores * pores * pores)) * w.solid_fraction;
   return PoreWater<double>{.fluid_density = w.density_of_fluid(density),
                            .viscosity = w.viscosity_of_fluid(),
                            .solid_fraction = w.solid_fraction,
                            .critical = w.critical_solid_fraction.value_or(0),
-                           .permeability = w.permeability_at_start(),
+                           .permeability = permeability,
                            .compressibility = w.compressibility,
                            .reference = w.reference_stress,
                            .grain_inertia = w.density_of_grains(density) * d * d,
                            .suction = w.suction,
+                           .meniscus = pores * (d > 0 ? d : grains),
                            .friction = options.material.internal_friction(),
                            .drained_bed = w.bed == Drainage::drained,
                            .sealed_surface = w.surface == Drainage::sealed};

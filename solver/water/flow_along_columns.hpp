@@ -110,6 +110,7 @@ struct FlowAlongColumns : WaterStep<Real> {
     Real layer;     ///< height of a layer normal to the bed [m]
     Real duration;  ///< [s]
     Real shear;     ///< its rate by the slip over the bed (T50f) [1/s]
+    Real surface;   ///< pressure of the water at its surface (T50i) [Pa]
     TALUS_HD Column(const FlowAlongColumns& k, const ColumnNodes& at) : duration(Real(k.clock->water.duration)) {
       const ColumnBed<Real> bed = bed_under(k.grid, k.weights, at.i, at.j);
       area = bed.area;
@@ -121,6 +122,7 @@ struct FlowAlongColumns : WaterStep<Real> {
       mass = k.density * pull * k.submersion.weight(below);
       water = k.water.fluid_density * pull * (Real(1) - below);  // below the level it is there on all sides
       shear = k.slip(at) / depth;
+      surface = k.water.suction > Real(0) ? k.surface_pressure(at, area) * (Real(1) - below) : Real(0);
     }
   };
   /// What lies over a cell.
@@ -134,6 +136,12 @@ struct FlowAlongColumns : WaterStep<Real> {
     if (!nodes || !(water.critical > Real(0))) return Real(0);
     const Vec4<Real> node = nodes[at.node(0)];
     return node.w > Real(0) ? length(Vec3<Real>{node.x, node.y, node.z}) / node.w : Real(0);
+  }
+  /// The pressure at the surface of a column by the water that it has taken in since the start.
+  TALUS_HD Real surface_pressure(const ColumnNodes& at, Real area) const {
+    Real taken = 0;
+    for (int k = at.begin(); k < at.end(); ++k) taken += cells[at.node(k)].z;
+    return water.surface_pressure(taken / area);
   }
   /// The load at the middle of what of a cell has water [Pa]: dry points of the cell and loads lie over it.
   TALUS_HD Real load_on(const WaterCell<Real>& own, const Column& column, const Top& top) const {
@@ -186,12 +194,11 @@ struct FlowAlongColumns : WaterStep<Real> {
                    down = below.to(own, column.duration, k == 1 && !water.drained_bed);
         const bool alone = !above.wet() && !below.wet();
         const Real handed = up / pivot;
-        Real open = handed * rest;
-        if (!above.wet() && !water.sealed_surface) open += to_face(own, column, alone);
-        if (k == 0 && water.drained_bed) open += to_face(own, column, alone);
-        rest = store + open;
+        const Real surface = above.wet() || water.sealed_surface ? Real(0) : to_face(own, column, alone);
+        rest = store + handed * rest + surface;
+        if (k == 0 && water.drained_bed) rest += to_face(own, column, alone);
         pivot = rest + down;
-        right = store * start + handed * right;
+        right = store * start + handed * right + surface * column.surface;
         const Vec4<Real> sums = cells[at.node(k)];
         answers[at.node(k)] = {own.effective - sums.y / sums.x, right / pivot, down / pivot, start};
       }

@@ -32,6 +32,7 @@ struct PoreWater {
   Real reference = 0;        ///< sigma_0 of (T50b) [Pa]
   Real grain_inertia = 0;    ///< density of the grains times their diameter squared [kg/m]
   Real suction = 0;          ///< largest, at which air comes in [Pa]
+  Real meniscus = 0;         ///< depth of water that the surface lacks at that suction [m]
   Real friction = 0;         ///< tan of the friction angle inside, 0: none [-]
   bool drained_bed = false, sealed_surface = false;
 
@@ -47,6 +48,7 @@ struct PoreWater {
             .reference = static_cast<To>(reference),
             .grain_inertia = static_cast<To>(grain_inertia),
             .suction = static_cast<To>(suction),
+            .meniscus = static_cast<To>(meniscus),
             .friction = static_cast<To>(friction),
             .drained_bed = drained_bed,
             .sealed_surface = sealed_surface};
@@ -91,6 +93,12 @@ struct PoreWater {
     const Real way = share * d.tangent / (Real(1) - share * from * d.slope);
     const Real to = from * Real(exp(way < Real(1) ? way : Real(1))) - reference;
     return to > Real(0) ? to : Real(0);
+  }
+  /// The pressure at the surface of a mass that has taken in a depth of water since the start [m]: there is no other
+  /// water over it, and its grains draw in the surface (T50i) [Pa].
+  TALUS_HD Real surface_pressure(Real taken) const {
+    const Real share = taken / meniscus;
+    return share > Real(0) ? -suction * (share < Real(1) ? share : Real(1)) : Real(0);
   }
   /// The strength by friction of grains under this load across the bed [Pa] that bear `effective`, as
   /// ParticleState::water_strength has it: the share that is left of it, or below 0 a suction beside it [Pa].

@@ -23,7 +23,8 @@ PoreWater<double> sample() {
           .compressibility = 0.03,
           .reference = 1000,
           .grain_inertia = 2650 * 1e-6,
-          .suction = 500};
+          .suction = 500,
+          .meniscus = 0.4e-3};
 }
 
 TEST(PoreWaterFormulas, permeability_is_that_of_the_start_there_and_falls_with_the_pores) {
@@ -58,6 +59,13 @@ TEST(PoreWaterFormulas, strength_ends_at_none_and_at_the_suction) {
   EXPECT_EQ(water.strength(1e4, 1.02e4), -200);
   EXPECT_EQ(water.strength(1e4, 4e4), -500);
   EXPECT_EQ(water.strength(0, 0), 1);
+}
+
+TEST(PoreWaterFormulas, the_surface_sucks_by_the_water_that_it_lacks) {
+  const PoreWater<double> water = sample();
+  EXPECT_EQ(water.surface_pressure(-1e-3), 0) << "water that the grains press out stands there";
+  EXPECT_EQ(water.surface_pressure(1e-4), -125);
+  EXPECT_EQ(water.surface_pressure(1), -500);
 }
 
 TEST(WaterCells, pass_water_on_by_their_depth_and_permeability) {
