@@ -254,15 +254,15 @@ struct FlowAlongColumns : WaterStep<Real> {
       const Real load = load_on(own, column, top);
       if (!own.wet()) {
         answers[n] = {own.weight > Real(0) ? load : Real(0), Real(0), Real(0), middle_of(own, column, k)};
-        foot.ends = true;
+        foot.ends = foot.ends || own.weight > Real(0) || foot.count > 0;
         continue;
       }
       const Vec4<Real> kept = answers[n];
       const Real start = kept.z, hydrostatic = pressure_of(own, load) - start, most = load - hydrostatic;
       const Real ended = kept.x + kept.y * below;
       below = ended < most ? ended : most;
-      if (k == 0) foot.over = hydrostatic + Real(0.5) * column.water * own.depth;
-      if (k == 0 || foot.count > 0) foot.add(below, own.depth);
+      if (foot.count == 0) foot.over = hydrostatic + Real(0.5) * column.water * own.depth;
+      foot.add(below, own.depth);
       const Real change = below - start;
       const Real after = own.effective - change, inflow = -water.strain(own.solid, own.effective, after);
       answers[n] = {load, after - own.effective + kept.w, inflow, middle_of(own, column, k)};

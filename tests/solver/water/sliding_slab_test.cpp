@@ -10,7 +10,7 @@ namespace talus::solver::testing {
 namespace {
 
 constexpr double cell = 1, depth = 2, from = 6, length = 16;  // vertical depth [m]
-constexpr double stiffness = 1e8;                             // of the skeleton [Pa]
+constexpr double stiffness = 1e7;                             // of the skeleton, and of the mass [Pa]
 
 struct Slab {
   double slope, friction;  // [deg]
@@ -19,7 +19,7 @@ struct Slab {
 };
 
 SolveOptions options_of(const Slab& s, Integrator integrator) {
-  SolveOptions o = elastic_options(1e8, integrator);
+  SolveOptions o = elastic_options(stiffness, integrator);
   o.material.poisson_ratio = 0;
   o.base.friction_angle = s.friction;
   o.walls = rollers(0, 1);
@@ -100,8 +100,8 @@ TEST_P(SlidingSlab, stops_as_its_pressure_drains) {
         scene.points.effective_stress[p] = on_bed * ((1 - hydrostatic) * (1 - z) - excess * std::cos(M_PI / 2 * z));
       }
     };
-    const double way = way_of(o, {s.slope, wanted.way, wanted.time + 5}, GetParam(), set);
-    EXPECT_NEAR(way, wanted.way, 0.015 * wanted.way) << name_of(integrator);
+    const double way = way_of(o, {s.slope, wanted.way, wanted.time + 5, 12}, GetParam(), set);
+    EXPECT_NEAR(way, wanted.way, 0.01 * wanted.way) << name_of(integrator);
   }
 }
 
@@ -134,7 +134,7 @@ TEST_P(SlidingSlab, runs_or_creeps_by_its_first_porosity_alone) {
     o.water.reference_stress = 1000;
     o.water.critical_solid_fraction = 0.64;
     o.water.solid_fraction = solid;
-    o.water.suction = 1e5;
+    o.water.suction = 1e3;
     return way_of(o, {20, 60, 9, layers}, GetParam());
   };
   const double drained = 40.5 * 9.81 * (std::sin(20 * degree) - 0.5 * std::cos(20 * degree) * std::tan(30 * degree));
