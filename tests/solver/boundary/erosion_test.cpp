@@ -32,7 +32,7 @@ Domain slide_on_ground() {
 SolveOptions eroding(Integrator integrator) {
   SolveOptions o = stepping_by(integrator);
   o.material.friction_angle = 20;
-  o.material.youngs_modulus = 1e7;
+  o.material.youngs_modulus = 3e6;
   o.base.law = FrictionLaw::coulomb;
   o.base.friction_angle = 20;
   o.erosion.law = ErosionLaw::rate;
