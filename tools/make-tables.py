@@ -58,6 +58,8 @@ CASES = {
     "D3": ("the same with weak seam", "Giam & Donald (1989)"),
     "D4": ("factor of safety, wedge", "Hoek & Bray (1981)"),
     "D5": ("factor of safety, vertical cut", "Martin (2011)"),
+    "E1": ("columns of beads in a fluid", "Webb (2024)"),
+    "E2": ("debris-flow flume", "noted"),
 }
 
 

@@ -54,5 +54,7 @@ void slope_on_foundation(Bench&);         // D2
 void slope_on_seam(Bench&);               // D3
 void rock_wedge(Bench&);                  // D4
 void undrained_cut(Bench&);               // D5
+void wet_columns(Bench&);                 // E1
+void debris_flow_flume(Bench&);           // E2
 
 }  // namespace talus::validation

@@ -55,6 +55,8 @@ constexpr Case cases[] = {
     {"D3", "factor of safety of a slope on a weak seam", true, slope_on_seam},
     {"D4", "factor of safety of a wedge", true, rock_wedge},
     {"D5", "factor of safety of an undrained vertical cut", true, undrained_cut},
+    {"E1", "round columns of beads in a fluid", false, wet_columns},
+    {"E2", "release in a debris-flow flume", false, debris_flow_flume},
 };
 
 struct Words {

@@ -52,6 +52,10 @@ Series outline_of(const Outcome& o, std::size_t frame, const Sand& s, int colour
 /// The same over the distance from the axis, of a quarter of a round deposit: the mean of rings two cells wide.
 Series outline_of_quarter(const Points& points, const Sand& s, int colour);
 
+/// A quarter of a round column from strips of a sixteenth of its radius along y, each as far along x as the circle,
+/// rounded to a sixteenth as well.
+Overrides round_column(const Sand& s);
+
 /// Height and run-out of a laboratory as two marks.
 Series laboratory(const std::string& name, const Sand& s, double run_out, double height, int colour);
 /// Those of both laboratories that measured in channels.

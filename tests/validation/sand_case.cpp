@@ -316,8 +316,14 @@ HalvedCells plane_column(Bench& bench, double aspect) {
   return column;
 }
 
-/// A quarter of a round column from strips of a sixteenth of its radius along y, each as far along x as the circle,
-/// rounded to a sixteenth as well.
+/// The front of a quarter of a round deposit, over the distance from the axis.
+double front_of_quarter(Points points, const Sand& s) {
+  for (auto& p : points.position) p = {std::hypot(p[0], p[1]), 0, p[2]};
+  return front_of(points, s.h, [](double radius) { return std::numbers::pi / 2 * radius; });
+}
+
+}  // namespace
+
 Overrides round_column(const Sand& s) {
   constexpr int strips = 16;
   const double wide = s.width / strips, reach = s.width * (1 + 1.5 * round_run_out(s.height / s.width));
@@ -332,14 +338,6 @@ Overrides round_column(const Sand& s) {
   }
   return all;
 }
-
-/// The front of a quarter of a round deposit, over the distance from the axis.
-double front_of_quarter(Points points, const Sand& s) {
-  for (auto& p : points.position) p = {std::hypot(p[0], p[1]), 0, p[2]};
-  return front_of(points, s.h, [](double radius) { return std::numbers::pi / 2 * radius; });
-}
-
-}  // namespace
 
 void sand_column_aspects(Bench& bench) {
   if (bench.coarse()) return coarse_column(bench, "a = 1, 4 cells", column_of(1, 4));
