@@ -83,6 +83,7 @@ struct FlowAlongColumns : WaterStep<Real> {
   const int* active;
   Real density;  ///< of the mass [kg/m3]
   Vec4<Real>* cells;
+  Real* moments;            ///< of the cells' weights about their nodes [N layers]
   Vec4<Real>* answers;      ///< CellAnswer of every cell; in between what substitute() needs of eliminate()
   const Vec4<Real>* nodes;  ///< mass and momentum of the step's nodes; null: the bed's slip is not known
   const Real* weights;      ///< of all columns, [rows * columns] [N]
@@ -92,12 +93,11 @@ struct FlowAlongColumns : WaterStep<Real> {
     if (!this->is_due()) return;
     const ColumnNodes at = ColumnNodes::find(grid, active, c);
     if (!at.in_domain()) return;
-    if (!(weights[at.column] > Real(0))) {
-      maps.grains_share[at.column] = 1;
-      maps.effective_stress[at.column] = 0;
-      return;
-    }
+    maps.grains_share[at.column] = 1;
+    maps.effective_stress[at.column] = 0;
+    if (!(weights[at.column] > Real(0))) return;
     const Column column(*this, at);
+    if (!(column.area > Real(0))) return leave_out(at);
     const Top total = eliminate(at, column);
     substitute(at, column, total);
   }
@@ -125,6 +125,14 @@ struct FlowAlongColumns : WaterStep<Real> {
       surface = k.water.suction > Real(0) ? k.surface_pressure(at, area) * (Real(1) - below) : Real(0);
     }
   };
+  /// The method leaves out a column behind a wall, which points before it reach by their shape functions.
+  TALUS_HD void leave_out(const ColumnNodes& at) const {
+    for (int k = at.begin(); k < at.end(); ++k) {
+      cells[at.node(k)] = answers[at.node(k)] = {};
+      moments[at.node(k)] = 0;
+    }
+  }
+
   /// What lies over a cell.
   struct Top {
     Real weight = 0;  ///< [N]
@@ -148,11 +156,11 @@ struct FlowAlongColumns : WaterStep<Real> {
     const Real held = own.wet() ? own.depth * column.mass : own.weight / column.area;
     return (top.weight + own.weight) / column.area - Real(0.5) * held;
   }
-  /// The height of the middle of what is in a cell over its node [layers]: it fills the cell from below.
-  TALUS_HD Real middle_of(const WaterCell<Real>& own, const Column& column, int k) const {
-    const Real room = k == 0 ? Real(0.5) : Real(1), floor = k == 0 ? Real(0) : Real(-0.5);
-    const Real filled = own.weight / (column.area * column.mass * column.layer);
-    return floor + Real(0.5) * (filled < room ? filled : room);
+  /// The method returns the height of the middle of what is in a cell over its node [layers], and clears it.
+  TALUS_HD Real take_middle(const WaterCell<Real>& own, int n) const {
+    const Real moment = moments[n];
+    moments[n] = 0;
+    return own.weight > Real(0) ? moment / own.weight : Real(0);
   }
   TALUS_HD WaterCell<Real> cell(const ColumnNodes& at, const Column& column, int k) const {
     if (k < at.begin() || k >= at.end()) return {};
@@ -253,7 +261,7 @@ struct FlowAlongColumns : WaterStep<Real> {
       top.weight -= own.weight;
       const Real load = load_on(own, column, top);
       if (!own.wet()) {
-        answers[n] = {own.weight > Real(0) ? load : Real(0), Real(0), Real(0), middle_of(own, column, k)};
+        answers[n] = {own.weight > Real(0) ? load : Real(0), Real(0), Real(0), take_middle(own, n)};
         foot.ends = foot.ends || own.weight > Real(0) || foot.count > 0;
         continue;
       }
@@ -265,7 +273,7 @@ struct FlowAlongColumns : WaterStep<Real> {
       foot.add(below, own.depth);
       const Real change = below - start;
       const Real after = own.effective - change, inflow = -water.strain(own.solid, own.effective, after);
-      answers[n] = {load, after - own.effective + kept.w, inflow, middle_of(own, column, k)};
+      answers[n] = {load, after - own.effective + kept.w, inflow, take_middle(own, n)};
     }
     const Real excess = foot.count == 0 || water.drained_bed ? Real(0) : foot.at_bed();
     const Real borne = foot.count == 0 ? Real(1) : water.strength_share(load_on_bed, load_on_bed - excess - foot.over);

@@ -55,28 +55,27 @@ struct WaterToPoints : WaterStep<Real> {
   }
 
  private:
-  /// The answers of the cells at the point, `offset` over its node [layers]: in each column along z on the line through
-  /// its cell and the next one, or beyond the last one.
+  /// The answers of the cells at the point, `offset` over its node [layers]. The load goes on the line to the next
+  /// cell. What changes goes along a limited slope (van Leer 1977) about the middle of what is in the cell: its mean
+  /// stays, and points of a cell do not drift apart where cells change against each other.
   TALUS_HD CellAnswer<Real> gather(const CellsAround<Real, Shape>& at, Real offset) const {
     CellAnswer<Real> sum;
     Real weights = 0;
     for (int q = 0; q < Shape::width * Shape::width; ++q) {
+      const BlockSlot& stored = at.slot(grid, q);
       const int n = at.column(grid, q) + at.k * block_columns;
       const CellAnswer<Real> own(answers[n]);
       if (!(own.load > Real(0))) continue;
-      CellAnswer<Real> next;
-      int beside = offset < own.middle && at.k > 0 ? -1 : 1;
-      for (int tries = 0; tries < 2 && !(next.load > Real(0)); ++tries) {
-        if (tries == 1) beside = -beside;
-        if (at.k + beside >= 0) next = CellAnswer<Real>(answers[n + beside * block_columns]);
-      }
-      const Real apart = Real(beside) * (next.middle - own.middle) + Real(1);
-      Real part = next.load > Real(0) && apart > Real(0.25) ? Real(beside) * (offset - own.middle) / apart : Real(0);
-      if (part < Real(-0.5)) part = Real(-0.5);
-      const Real weight = at.weight(q), a = weight * (Real(1) - part), b = weight * part;
-      sum.load += own.load * a + next.load * b;
-      sum.change += own.change * a + next.change * b;
-      sum.inflow += own.inflow * a + next.inflow * b;
+      CellAnswer<Real> up, down;
+      if (at.k + 1 < stored.first_layer + stored.layers) up = CellAnswer<Real>(answers[n + block_columns]);
+      if (at.k > stored.first_layer) down = CellAnswer<Real>(answers[n - block_columns]);
+      const Step to_up(own, up, up.middle + Real(1) - own.middle),
+          from_down(down, own, own.middle + Real(1) - down.middle);
+      const bool on_down = from_down.known && (offset < own.middle || !to_up.known);
+      const Real along = offset - own.middle, weight = at.weight(q);
+      sum.load += weight * (own.load + along * (on_down ? from_down.load : to_up.load));
+      sum.change += weight * (own.change + along * limited(from_down.change, to_up.change));
+      sum.inflow += weight * (own.inflow + along * limited(from_down.inflow, to_up.inflow));
       weights += weight;
     }
     if (!(weights > Real(0))) return sum;
@@ -85,6 +84,24 @@ struct WaterToPoints : WaterStep<Real> {
     sum.change *= over;
     sum.inflow *= over;
     return sum;
+  }
+  /// The slopes from a cell to the one above it, over a distance [layers]; 0 where one of them is empty.
+  struct Step {
+    bool known;
+    Real load = 0, change = 0, inflow = 0;
+    TALUS_HD Step(const CellAnswer<Real>& low, const CellAnswer<Real>& high, Real apart)
+        : known(low.load > Real(0) && high.load > Real(0) && apart > Real(0.25)) {
+      if (!known) return;
+      load = (high.load - low.load) / apart;
+      change = (high.change - low.change) / apart;
+      inflow = (high.inflow - low.inflow) / apart;
+    }
+  };
+  /// The mean of the slopes to both sides, at most twice either; 0 where they differ in sign.
+  TALUS_HD static Real limited(Real a, Real b) {
+    if (!(a * b > Real(0))) return Real(0);
+    const Real mean = Real(0.5) * (a + b), most = Real(2) * (fabs(a) < fabs(b) ? a : b);
+    return fabs(mean) < fabs(most) ? mean : most;
   }
 
   /// The effective stress at the start under a load [Pa].
@@ -134,6 +151,7 @@ class WaterColumns {
         first_{{}, first.ratio, first.density, first.stiffness},
         cells_(device),
         answers_(device),
+        moments_(device),
         weights_(device),
         table_(device),
         at_once_(at_once) {
@@ -144,12 +162,13 @@ class WaterColumns {
     weights_.resize_zeroed(first.table.size());
   }
   bool on() const { return on_; }  ///< whether there is water
-  std::size_t bytes() const { return bytes_of(cells_, answers_, weights_, table_); }
+  std::size_t bytes() const { return bytes_of(cells_, moments_, answers_, weights_, table_); }
 
   /// The method gives storage to the cells of so many nodes.
   void resize(std::size_t nodes) {
     if (!on_) return;
     cells_.resize_zeroed(nodes);
+    moments_.resize_zeroed(nodes);
     answers_.resize_zeroed(nodes);
   }
 
@@ -172,11 +191,12 @@ class WaterColumns {
     const WaterStep<Real> step{grid.view(),       points, around.clock, around.gravity, around.loads,
                                around.submersion, water_};
     const int columns = grid.active_blocks() * block_columns;
-    scatter_points(device_, points.count, grid.groups(), WaterToCells<Real, Shape>{step, materials, cells_.data()});
+    scatter_points(device_, points.count, grid.groups(),
+                   WaterToCells<Real, Shape>{step, materials, cells_.data(), moments_.data()});
     for_each(device_, columns, WeighColumns<Real>{step, grid.active_list(), cells_.data(), weights_.data()});
     for_each(device_, columns,
              FlowAlongColumns<Real>{step, grid.active_list(), static_cast<Real>(first_.density), cells_.data(),
-                                    answers_.data(), around.nodes, weights_.data(), around.maps});
+                                    moments_.data(), answers_.data(), around.nodes, weights_.data(), around.maps});
     for_each(
         device_, points.count,
         WaterToPoints<Real, Shape>{step, answers_.data(), table_.data(), static_cast<Real>(first_.ratio),
@@ -189,7 +209,7 @@ class WaterColumns {
   PoreWater<Real> water_;
   FirstWater first_;  ///< its table is on the device
   Buffer<Vec4<Real>, Device> cells_, answers_;
-  Buffer<Real, Device> weights_;
+  Buffer<Real, Device> moments_, weights_;
   Buffer<float, Device> table_;
   bool at_once_;
 };

@@ -45,6 +45,10 @@ struct CellsAround {
   TALUS_HD CellsAround(const GridView<Real>& grid, const ParticleView<Real>& points, int p)
       : CellsAround(Stencil<Real, Shape>(grid, points, p), points.cell[2][p]) {}
   TALUS_HD Real weight(int q) const { return x[q % Shape::width] * y[q / Shape::width]; }
+  /// Where the block of column q is stored.
+  TALUS_HD const BlockSlot& slot(const GridView<Real>& grid, int q) const {
+    return grid.slot(i + q % Shape::width, j + q / Shape::width);
+  }
   /// The place of layer 0 of column q in storage.
   TALUS_HD int column(const GridView<Real>& grid, int q) const {
     return Stencil<Real, Shape>::column_at(grid, i + q % Shape::width, j + q / Shape::width);
@@ -60,22 +64,23 @@ struct CellsAround {
   }
 };
 
-/// The scatter of the points' weight across the bed [N] and, of those with water, volume [m3], effective stress [Pa m3]
-/// and volume change [m3] to the cells of the columns. See ScatterKernel (tiles.hpp) for its members. Before, shear
-/// changes the effective stress (T50e).
+/// The scatter of the points' weight across the bed [N], its moment about the cell's node [N layers] and, of those with
+/// water, volume [m3], effective stress [Pa m3] and volume change [m3] to the cells of the columns. See ScatterKernel
+/// (tiles.hpp) for its members. Before, shear changes the effective stress (T50e).
 template <class Real, class Shape>
 struct WaterToCells : WaterStep<Real> {
   using Base = WaterStep<Real>;
   using Base::grid, Base::points;
   using Number = Real;
-  static constexpr int width = Shape::width, columns_each = width * width, deep = 1, parts = 4;
+  static constexpr int width = Shape::width, columns_each = width * width, deep = 1, parts = 5;
   Materials<Real> materials;
   Vec4<Real>* cells;
+  Real* moments;
 
   struct Source {
     CellsAround<Real, Shape> at;
     int i, j, k;
-    Real weight, volume = 0, effective = 0, change = 0;
+    Real weight, moment, volume = 0, effective = 0, change = 0;
 
     TALUS_HD Source(const WaterToCells& kernel, int p) : at(kernel.grid, kernel.points, p), i(at.i), j(at.j), k(at.k) {
       const ParticleView<Real>& all = kernel.points;
@@ -84,6 +89,7 @@ struct WaterToCells : WaterStep<Real> {
                                                             kernel.submersion.weight(kernel.below(at, p)));
       if (kernel.loads && all.load[p] >= 0) pull += narrow<Real>(kernel.loads[all.load[p]]) * own;
       weight = -dot(pull, at.normal);
+      moment = weight * all.offset[2][p];
       const Real before = all.effective_stress[p];
       if (before < Real(0)) return;
       volume = own;
@@ -94,7 +100,7 @@ struct WaterToCells : WaterStep<Real> {
     }
   };
   struct Sums {
-    Real weight = 0;
+    Real weight = 0, moment = 0;
     Vec3<Real> wet{};
   };
 
@@ -107,16 +113,21 @@ struct WaterToCells : WaterStep<Real> {
   TALUS_HD void add(const Source& s, int q, Sums (&sums)[deep]) const {
     const Real share = s.at.weight(q);
     sums[0].weight += share * s.weight;
+    sums[0].moment += share * s.moment;
     sums[0].wet += Vec3<Real>{s.volume, s.volume * s.effective, s.volume * s.change} * share;
   }
-  TALUS_HD void add_to_node(int n, const Sums& sums) const { scatter_add(&cells[n], sums.weight, sums.wet); }
+  TALUS_HD void add_to_node(int n, const Sums& sums) const {
+    scatter_add(&cells[n], sums.weight, sums.wet);
+    scatter_add(&moments[n], sums.moment);
+  }
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.weight;
     to[1] = sums.wet.x;
     to[2] = sums.wet.y;
     to[3] = sums.wet.z;
+    to[4] = sums.moment;
   }
-  TALUS_HD Real* part(int n, int q) const { return &cells[n].w + q; }
+  TALUS_HD Real* part(int n, int q) const { return q < 4 ? &cells[n].w + q : &moments[n]; }
 
   /// The method stores and returns the effective stress of point p after its shear since the last step with water, and
   /// keeps the dilatancy where the strength will stand [Pa].

@@ -43,7 +43,7 @@ SolveOptions options_of(const Column& c) {
   o.water.reference_stress = modulus / o.water.solid_fraction;
   o.water.permeability = coefficient / modulus * o.water.viscosity;
   if (c.both_ways) o.water.bed = Drainage::drained;
-  o.implicit.step = 0.004;
+  o.implicit.step = 0.003;
   o.largest_step = 0.02;
   o.map_threshold = 0.1;
   return o;
@@ -115,7 +115,7 @@ class Consolidation : public InEachPlace {};
 
 TEST_P(Consolidation, is_terzaghis) {
   for (const Integrator integrator : {Integrator::explicit_, Integrator::column_implicit, Integrator::quasi_static}) {
-    const Errors one = follow({integrator, 16, false}, GetParam());
+    const Errors one = follow({integrator, 20, false}, GetParam());
     EXPECT_LT(one.pressure, 0.01) << name_of(integrator);
     EXPECT_LT(one.settlement, 0.005) << name_of(integrator);
   }
