@@ -138,8 +138,8 @@ struct Flume {
   static double depth(double x_at) {
     constexpr double outline[][2] = {{-4.7, 0}, {-4.18, 0.83}, {-0.98, 1.63}, {0, 0}};
     double most = 0;
-    for (double h = 0.005; h < 2.5; h += 0.01) {  // up a vertical line, into the outline and out of it
-      const double s = x_at / std::cos(steep) - h * std::sin(steep), n = h * std::cos(steep);
+    for (int part = 0; part < 250; ++part) {  // up a vertical line, into the outline and out of it
+      const double h = 0.005 + 0.01 * part, s = x_at / std::cos(steep) - h * std::sin(steep), n = h * std::cos(steep);
       for (int k = 0; k < 3; ++k) {
         const auto &a = outline[k], &b = outline[k + 1];
         if (s < a[0] || s >= b[0]) continue;
