@@ -11,6 +11,13 @@
 namespace talus::solver {
 namespace {
 
+/// The permeability of a mass of this solid fraction over the square of its grains' diameter, by Kozeny and Carman
+/// (Carman 1937) [-].
+double permeability_over_square(double solid) {
+  const double pores = 1 - solid;
+  return pores * pores * pores / (180 * solid * solid);
+}
+
 /// Grains of any mineral [kg/m3].
 constexpr double lightest_grains = 1050, heaviest_grains = 5000;
 
@@ -78,8 +85,8 @@ double WaterOptions::viscosity_of_fluid() const {
 
 double WaterOptions::permeability_at_start() const {
   if (permeability) return *permeability;
-  const double pores = 1 - solid_fraction, d = grain_diameter.value_or(0);
-  return d * d * pores * pores * pores / (180 * solid_fraction * solid_fraction);
+  const double d = grain_diameter.value_or(0);
+  return d * d * permeability_over_square(solid_fraction);
 }
 
 std::string WaterOptions::words(double density) const {
@@ -148,8 +155,8 @@ std::optional<PoreWater<double>> make_water(const SolveOptions& options) {
   const WaterOptions& w = options.water;
   if (!w.flows()) return {};
   const double density = options.material.density, d = w.grain_diameter.value_or(0);
-  const double pores = 1 - w.solid_fraction, permeability = w.permeability_at_start(),
-               grains = std::sqrt(180 * permeability / (pores * pores * pores)) * w.solid_fraction;
+  const double permeability = w.permeability_at_start(),
+               grains = std::sqrt(permeability / permeability_over_square(w.solid_fraction));
   return PoreWater<double>{.fluid_density = w.density_of_fluid(density),
                            .viscosity = w.viscosity_of_fluid(),
                            .solid_fraction = w.solid_fraction,
@@ -159,7 +166,7 @@ std::optional<PoreWater<double>> make_water(const SolveOptions& options) {
                            .reference = w.reference_stress,
                            .grain_inertia = w.density_of_grains(density) * d * d,
                            .suction = w.suction,
-                           .meniscus = pores * (d > 0 ? d : grains),
+                           .meniscus = (1 - w.solid_fraction) * (d > 0 ? d : grains),
                            .friction = options.material.internal_friction(),
                            .drained_bed = w.bed == Drainage::drained,
                            .sealed_surface = w.surface == Drainage::sealed};
