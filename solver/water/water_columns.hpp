@@ -56,8 +56,8 @@ struct WaterToPoints : WaterStep<Real> {
 
  private:
   /// The answers of the cells at the point, `offset` over its node [layers]. The load goes on the line to the next
-  /// cell. What changes goes along a limited slope (van Leer 1977) about the middle of what is in the cell: its mean
-  /// stays, and points of a cell do not drift apart where cells change against each other.
+  /// cell. What changes goes along the mean of the slopes to the cells above and below (Fromm 1968), about the middle of
+  /// what is in the cell: its mean stays. No limit: what it cut off would stay with the points for good.
   TALUS_HD CellAnswer<Real> gather(const CellsAround<Real, Shape>& at, Real offset) const {
     CellAnswer<Real> sum;
     Real weights = 0;
@@ -73,9 +73,10 @@ struct WaterToPoints : WaterStep<Real> {
           from_down(down, own, own.middle + Real(1) - down.middle);
       const bool on_down = from_down.known && (offset < own.middle || !to_up.known);
       const Real along = offset - own.middle, weight = at.weight(q);
+      const Real half = from_down.known && to_up.known ? Real(0.5) * along : Real(0);
       sum.load += weight * (own.load + along * (on_down ? from_down.load : to_up.load));
-      sum.change += weight * (own.change + along * limited(from_down.change, to_up.change));
-      sum.inflow += weight * (own.inflow + along * limited(from_down.inflow, to_up.inflow));
+      sum.change += weight * (own.change + half * (from_down.change + to_up.change));
+      sum.inflow += weight * (own.inflow + half * (from_down.inflow + to_up.inflow));
       weights += weight;
     }
     if (!(weights > Real(0))) return sum;
@@ -97,13 +98,6 @@ struct WaterToPoints : WaterStep<Real> {
       inflow = (high.inflow - low.inflow) / apart;
     }
   };
-  /// The mean of the slopes to both sides, at most twice either; 0 where they differ in sign.
-  TALUS_HD static Real limited(Real a, Real b) {
-    if (!(a * b > Real(0))) return Real(0);
-    const Real mean = Real(0.5) * (a + b), most = Real(2) * (fabs(a) < fabs(b) ? a : b);
-    return fabs(mean) < fabs(most) ? mean : most;
-  }
-
   /// The effective stress at the start under a load [Pa].
   TALUS_HD Real first(int p, const CellsAround<Real, Shape>& at, Real load) const {
     const Real pull = -dot(this->gravity.at(*clock), at.normal);

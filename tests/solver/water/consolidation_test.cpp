@@ -115,14 +115,14 @@ class Consolidation : public InEachPlace {};
 
 TEST_P(Consolidation, is_terzaghis) {
   for (const Integrator integrator : {Integrator::explicit_, Integrator::column_implicit, Integrator::quasi_static}) {
-    const Errors one = follow({integrator, 20, false}, GetParam());
+    const Errors one = follow({integrator, 16, false}, GetParam());
     EXPECT_LT(one.pressure, 0.01) << name_of(integrator);
     EXPECT_LT(one.settlement, 0.005) << name_of(integrator);
   }
 }
 
 TEST_P(Consolidation, is_terzaghis_by_both_ways) {
-  const Errors found = follow({Integrator::column_implicit, 40, true}, GetParam());
+  const Errors found = follow({Integrator::column_implicit, 32, true}, GetParam());
   EXPECT_LT(found.pressure, 0.01);
   EXPECT_LT(found.settlement, 0.01);
 }
