@@ -124,7 +124,7 @@ class PointSolver : public Solver {
   /// statics that load the mass in one step would begin without any.
   void flow_at_once(const Vec3<double>* loads) {
     Clock clock = clock_.read();
-    clock.flow_water();
+    clock.flow_water(clock.time, 0);
     clock_.write(clock);
     clock_.hand_over();
     flow_water({.full = gravity().full}, loads, nullptr);

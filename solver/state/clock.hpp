@@ -87,6 +87,9 @@ struct WaterPolicy {
   int is_due = 0;                ///< read by kernels: water flows in this step
   std::int64_t every_until = 0;  ///< it flows in every step before this one, for points that have come
   double last = 0;               ///< time at which it flowed last [s]
+  double passed = 0;             ///< time between that and the flow before [s]
+  double interval = 0;           ///< expected time from that to the next flow [s]
+  double until = 0;              ///< time up to which it has flowed [s]
   double duration = 0;           ///< for which it flows now [s]
   double depths = 0;             ///< sum over the columns at the last flow, in whole parts of a layer
   double liquefied = 0;          ///< the same of those on whose bed grains bear less than a tenth of the load
@@ -162,8 +165,7 @@ struct Clock {
     if (alarms.halt != running) return;
     if (motion_maps.path_unrecorded >= way_between_records || motion_maps.steps_unrecorded >= steps_between_records)
       record_motion();
-    if (water.flows_after(step)) flow_water();
-    const double longest = full_step(), remaining = next_event - time;
+    const double begun = time, longest = full_step(), remaining = next_event - time;
     if (longest >= remaining) {
       step_size = remaining;
       time = next_event;
@@ -173,6 +175,7 @@ struct Clock {
       step_size = remaining / ceil(remaining / longest * (1 - 1e-12));
       time += step_size;
     }
+    if (water.flows_after(step)) flow_water(begun, water.steps_between * step_size);
     subgrid.kept = share_kept(step_size);
     motion_maps.path_unrecorded +=
         static_cast<double>(positive_from_bits(control.speed_bits)) * step_size / motion_maps.column_spacing;
@@ -197,11 +200,16 @@ struct Clock {
     return {shaking.acceleration[0], shaking.acceleration[1], shaking.acceleration[2]};
   }
 
-  /// The method lets water flow for the time since it flowed last.
-  TALUS_HD void flow_water() {
+  /// The method lets water flow at a time, up to the middle of the interval to the next flow [s]: its pressure stays
+  /// over that interval, and has no lag.
+  TALUS_HD void flow_water(double now, double interval) {
+    const double until = now + 0.5 * interval;
     water.is_due = 1;
-    water.duration = time - water.last;
-    water.last = time;
+    water.passed = now - water.last;
+    water.last = now;
+    water.interval = interval;
+    water.duration = until > water.until ? until - water.until : 0;
+    water.until += water.duration;
     water.depths = water.liquefied = 0;
   }
 

@@ -15,6 +15,7 @@ struct WaterCell {
   Real weight = 0;     ///< across the bed, dry points too [N]
   Real depth = 0;      ///< of what has water, normal to the bed [m]
   Real effective = 0;  ///< stress [Pa]
+  Real by_shear = 0;   ///< of that, what the slip over the bed has changed [Pa]
   Real solid = 0;      ///< solid fraction [-]
   Real stiffness = 1;  ///< of the skeleton [Pa]
   Real mobility = 0;   ///< k / mu_f [m2/(Pa s)]
@@ -166,8 +167,11 @@ struct FlowAlongColumns : WaterStep<Real> {
     if (k < at.begin() || k >= at.end()) return {};
     WaterCell<Real> own{water, cells[at.node(k)], column.area};
     if (!own.wet()) return own;
-    if (column.shear > Real(0))  // without flow (T50e)
-      own.effective = water.sheared(own.solid, own.effective, column.shear * column.duration, column.shear);
+    if (column.shear > Real(0)) {  // without flow (T50e)
+      const Real before = own.effective;
+      own.effective = water.sheared(own.solid, before, column.shear * column.duration, column.shear);
+      own.by_shear = own.effective - before;
+    }
     own.stiffness = water.stiffness(own.solid, own.effective);
     own.mobility = water.mobility(own.solid);
     return own;
@@ -207,8 +211,7 @@ struct FlowAlongColumns : WaterStep<Real> {
         if (k == 0 && water.drained_bed) rest += to_face(own, column, alone);
         pivot = rest + down;
         right = store * start + handed * right + surface * column.surface;
-        const Vec4<Real> sums = cells[at.node(k)];
-        answers[at.node(k)] = {own.effective - sums.y / sums.x, right / pivot, down / pivot, start};
+        answers[at.node(k)] = {own.by_shear, right / pivot, down / pivot, start};
       }
       cells[at.node(k)] = own.kept();
       top.weight += own.weight;

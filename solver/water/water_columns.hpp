@@ -111,11 +111,12 @@ struct WaterToPoints : WaterStep<Real> {
   /// The method lets the point take what water brings, in steps of a flow no more at a time than raises its stress by
   /// the load: what lies thin drains at once, and the stiffness of an undrained mass would throw it.
   TALUS_HD void take_in(int p, const Vec3<Real>& normal, const CellAnswer<Real>& answer) const {
-    const Real strain = answer.inflow, duration = Real(clock->water.duration);
+    const Real strain = answer.inflow;
     if (!at_once) {
-      const Real most = answer.load / stiffness, due = points.water_due[p] - points.water_inflow[p] * duration + strain;
+      const Real most = answer.load / stiffness, taken = points.water_inflow[p] * Real(clock->water.passed),
+                 due = points.water_due[p] - taken + strain, interval = Real(clock->water.interval);
       const Real now = due < -most ? -most : due > most ? most : due;
-      points.water_inflow[p] = duration > Real(0) ? now / duration : Real(0);
+      points.water_inflow[p] = interval > Real(0) ? now / interval : Real(0);
       points.water_due[p] = due;
       return;
     }

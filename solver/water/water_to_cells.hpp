@@ -132,12 +132,12 @@ struct WaterToCells : WaterStep<Real> {
   /// The method stores and returns the effective stress of point p after its shear since the last step with water, and
   /// keeps the dilatancy where the strength will stand [Pa].
   TALUS_HD Real shear(int p, Real effective, Real solid) const {
-    const Real duration = Real(this->clock->water.duration);
+    const Real passed = Real(this->clock->water.passed);
     const Real shear = Real(sqrt(Real(3)) * (points.plastic_shear[p] - points.shear_seen[p]));  // of simple shear
     points.shear_seen[p] = points.plastic_shear[p];
     points.water_strength[p] = Real(0);
-    if (!(duration > Real(0)) || !(shear > Real(0))) return effective;
-    const Real rate = shear / duration, after = this->water.sheared(solid, effective, shear, rate);
+    if (!(passed > Real(0)) || !(shear > Real(0))) return effective;
+    const Real rate = shear / passed, after = this->water.sheared(solid, effective, shear, rate);
     points.water_strength[p] = this->water.dilatancy(solid, after, rate).tangent;
     points.effective_stress[p] = after;
     return after;

@@ -76,6 +76,9 @@ void visit_clock(AnyClock& c, Item&& item) {
   item("flows_each_step_until", c.water.every_until);
   item("flow_duration", c.water.duration);
   item("last_flow", c.water.last);
+  item("passed_since_flow", c.water.passed);
+  item("flow_interval", c.water.interval);
+  item("flowed_until", c.water.until);
   item("depths", c.water.depths);
   item("liquefied_depths", c.water.liquefied);
   item("shaking_x", c.shaking.acceleration[0]);

@@ -100,8 +100,9 @@ TEST_P(SlidingSlab, stops_as_its_pressure_drains) {
         scene.points.effective_stress[p] = on_bed * ((1 - hydrostatic) * (1 - z) - excess * std::cos(M_PI / 2 * z));
       }
     };
-    const double way = way_of(o, {s.slope, wanted.way, wanted.time + 5, 16}, GetParam(), set);
-    EXPECT_NEAR(way, wanted.way, 0.012 * wanted.way) << name_of(integrator);
+    const int layers = integrator == Integrator::explicit_ ? 8 : 16;  // whose steps go with the layers
+    const double way = way_of(o, {s.slope, wanted.way, wanted.time + 5, layers}, GetParam(), set);
+    EXPECT_NEAR(way, wanted.way, 0.01 * wanted.way) << name_of(integrator);
   }
 }
 
