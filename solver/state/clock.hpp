@@ -175,7 +175,8 @@ struct Clock {
       step_size = remaining / ceil(remaining / longest * (1 - 1e-12));
       time += step_size;
     }
-    if (water.flows_after(step)) flow_water(begun, water.steps_between * step_size);
+    // As long as there is no point a step is as long as it may be, and tells nothing of the next ones.
+    if (water.flows_after(step)) flow_water(begun, control.rate_bits > 0 ? water.steps_between * step_size : 0);
     subgrid.kept = share_kept(step_size);
     motion_maps.path_unrecorded +=
         static_cast<double>(positive_from_bits(control.speed_bits)) * step_size / motion_maps.column_spacing;
