@@ -56,8 +56,8 @@ struct WaterToPoints : WaterStep<Real> {
 
  private:
   /// The answers of the cells at the point, `offset` over its node [layers]. The load goes on the line to the next
-  /// cell. What changes goes along the mean of the slopes to the cells above and below (Fromm 1968), about the middle of
-  /// what is in the cell: its mean stays. No limit: what it cut off would stay with the points for good.
+  /// cell. What changes goes along the mean of the slopes to the cells above and below (Fromm 1968), about the middle
+  /// of what is in the cell: its mean stays. No limit: what it cut off would stay with the points for good.
   TALUS_HD CellAnswer<Real> gather(const CellsAround<Real, Shape>& at, Real offset) const {
     CellAnswer<Real> sum;
     Real weights = 0;
