@@ -180,11 +180,12 @@ TEST(Stability, of_an_infinite_slope_is_that_of_the_closed_form) {
 }
 
 TEST(Stability, of_an_infinite_slope_under_water_in_its_pores) {
-  // Full of water of half its density, which flows along the slope; and with a given share of the load.
-  for (const double ratio : {0.5, 0.3}) {
+  // Full of water of half its density, which flows along the slope; up to half of its depth; with a given share.
+  for (const double ratio : {0.5, 0.25, 0.3}) {
     BlockOnSlope s;
     s.options.water.permeability = 1e-10;
-    if (ratio != 0.5) s.options.water.pressure_ratio = ratio;
+    if (ratio == 0.25) s.options.water.table_depth = 1;
+    if (ratio == 0.3) s.options.water.pressure_ratio = ratio;
     const Stability found = StabilitySearch(s.domain, s.options, CpuDevice::make()).run();
     ASSERT_TRUE(found.factor.closed());
     EXPECT_NEAR(found.factor.middle() / infinite_slope(s, ratio, 0), 1, 0.01) << ratio;
