@@ -37,6 +37,7 @@ ParticleState Inflow::points_of(const InflowPulse& pulse) const {
 
 void append_points(ParticleState& to, const ParticleState& from, std::size_t first, std::size_t count) {
   const auto append = [&](const ParticleField&, int, auto& list, const auto& more) {
+    if (more.empty()) return;
     const auto begin = more.begin() + static_cast<std::ptrdiff_t>(first);
     list.insert(list.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
   };

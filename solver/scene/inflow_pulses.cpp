@@ -261,7 +261,10 @@ void InflowSeeder::add_point(const Strip& strip, double way, double height, Infl
   const CellPlace at{strip.middle[0] + way / shape.spacing * line_.ahead[0],
                      strip.middle[1] + way / shape.spacing * line_.ahead[1]};
   const std::size_t p = s.size();
-  visit_particle_fields([](const ParticleField& field, int, auto& list) { list.push_back(field.initial); }, s);
+  const auto add = [](const ParticleField& field, int, auto& list) {
+    if (!may_be_empty(field)) list.push_back(field.initial);
+  };
+  visit_particle_fields(add, s);
   place_in_cells(at[0], s.cell[0][p], s.offset[0][p]);
   place_in_cells(at[1], s.cell[1][p], s.offset[1][p]);
   const double ground = shape.mapping == Mapping::cartesian ? terrain_at(shape, terrain_.terrain, at[0], at[1]) : 0;

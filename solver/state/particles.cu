@@ -235,7 +235,10 @@ struct Halve {
 }  // namespace
 
 void ParticleState::resize(std::size_t count) {
-  visit_particle_fields([&](const ParticleField& field, int, auto& list) { list.assign(count, field.initial); }, *this);
+  const auto resize_one = [&](const ParticleField& field, int, auto& list) {
+    list.assign(may_be_empty(field) ? 0 : count, field.initial);
+  };
+  visit_particle_fields(resize_one, *this);
 }
 
 template <class Real, class Device>
@@ -255,6 +258,8 @@ void Particles<Real, Device>::upload(const ParticleState& state) {
     if (!holds(field)) return;
     if (field.kept == Kept::within_step) {
       array.resize(state.size());
+    } else if (list.empty()) {
+      upload_list(array, std::decay_t<decltype(list)>(state.size(), field.initial));
     } else {
       upload_list(array, list);
     }
@@ -269,6 +274,8 @@ void Particles<Real, Device>::append(const ParticleState& more) {
     if (!holds(field)) return;
     if (field.kept == Kept::within_step) {
       array.resize(all);
+    } else if (list.empty()) {
+      append_list(array, std::decay_t<decltype(list)>(more.size(), field.initial));
     } else {
       append_list(array, list);
     }
@@ -284,7 +291,7 @@ ParticleState Particles<Real, Device>::download(Kept least) const {
     if (field.kept < least) return;
     if (holds(field)) {
       download_list(array, list);
-    } else {
+    } else if (!may_be_empty(field)) {
       list.assign(static_cast<std::size_t>(count_), field.initial);
     }
   };

@@ -122,6 +122,9 @@ struct ParticleField {
   }
 };
 
+/// Whether the host keeps no list of a field while it holds nothing but its initial value: most runs have no water.
+constexpr bool may_be_empty(const ParticleField& field) { return field.needed_by == &ParticleNeeds::water; }
+
 /// The table.
 inline constexpr ParticleField particle_fields[] = {
 #define TALUS_LINE(name, numbers, components, unit, needed_by, kept, initial) \
@@ -273,7 +276,8 @@ struct ParticleView {
   }
 };
 
-/// A copy of the points on the host, in double; lists of one length, or empty where they were not asked for.
+/// A copy of the points on the host, in double; lists of one length, or empty where they were not asked for, or where
+/// they may_be_empty().
 struct ParticleState {
   using Ints = std::vector<int>;
   using Reals = std::vector<double>;

@@ -135,7 +135,7 @@ void read_points(const h5::File& file, SolverState& state) {
     if (!lacks(field, name)) items(name, list);
   });
   visit_points(state.points, [&](const ParticleField& field, const std::string&, auto& list) {
-    if (is_optional(field) && list.empty()) list.assign(state.points.size(), field.initial);
+    if (is_optional(field) && list.empty() && !may_be_empty(field)) list.assign(state.points.size(), field.initial);
   });
   if (file.exists(home_path)) state.homes = file.read_list<std::int64_t>(home_path);
 }
@@ -163,8 +163,9 @@ class OneLength {
 
 void check_lengths(const h5::File& file, const Checkpoint& c) {
   OneLength points(file, points_group);
-  visit_points(c.state.points,
-               [&](const ParticleField&, const std::string& name, const auto& list) { points(name, list); });
+  visit_points(c.state.points, [&](const ParticleField& field, const std::string& name, const auto& list) {
+    if (!may_be_empty(field) || !list.empty()) points(name, list);
+  });
   if (!c.state.homes.empty()) points("home", c.state.homes);
   OneLength maps(file, "/maps");
   const auto visit_map = [&](const RunningMap& map, const auto& values) {

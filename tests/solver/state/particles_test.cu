@@ -21,6 +21,7 @@ ParticleState sample() {
   int next = 1;
   visit_particle_fields(
       [&](const ParticleField&, int, auto& list) {
+        list.resize(count);
         for (auto& number : list) number = static_cast<std::decay_t<decltype(number)>>(next++);
       },
       state);
@@ -43,10 +44,11 @@ constexpr ParticleNeeds nothing_more{};
 /// Expects of every component of every field what `expected` says of its value at point p: expected(field, before, p).
 template <class Expected>
 void expect_fields(const ParticleState& after, const ParticleState& before, Kept least, std::size_t points,
-                   Expected&& expected) {
+                   Expected&& expected, const ParticleNeeds& needs = everything) {
   visit_particle_fields(
       [&](const ParticleField& field, int component, const auto& list, const auto& old) {
-        ASSERT_EQ(list.size(), field.kept < least ? 0 : points) << field.name_of(component);
+        const bool left_out = field.kept < least || (may_be_empty(field) && !(needs.*field.needed_by));
+        ASSERT_EQ(list.size(), left_out ? 0 : points) << field.name_of(component);
         for (std::size_t p = 0; p < list.size(); ++p)
           EXPECT_EQ(list[p], expected(field, old, p)) << field.name_of(component) << " of point " << p;
       },
@@ -91,14 +93,28 @@ TEST(ParticleTable, components_that_are_kept_are_counted_by_their_numbers) {
 TEST(ParticleTable, points_start_at_the_initial_values) {
   ParticleState state;
   state.resize(2);
-  expect_fields(state, state, Kept::within_step, 2,
-                [](const ParticleField& field, const auto&, std::size_t) { return field.initial; });
+  expect_fields(
+      state, state, Kept::within_step, 2,
+      [](const ParticleField& field, const auto&, std::size_t) { return field.initial; }, nothing_more);
   EXPECT_EQ(state.load, (std::vector<int>{-1, -1}));
 }
 
 TEST(ParticleTable, places_are_what_a_kernel_moves_of_a_position) {
   EXPECT_EQ(ParticleView<double>::place_bytes, 36);
   EXPECT_EQ(ParticleView<float>::place_bytes, 24);
+}
+
+TEST_P(ParticlesOn, begin_at_initial_values_where_the_host_has_none) {
+  in_both_precisions([](auto real, auto device) {
+    ParticleState state;
+    state.resize(count);
+    ASSERT_TRUE(state.effective_stress.empty());
+    Particles<decltype(real), decltype(device)> points(device, everything);
+    points.upload(state);
+    points.append(state);
+    expect_fields(points.download(), state, Kept::in_checkpoint, 2 * count,
+                  [](const ParticleField& field, const auto&, std::size_t) { return field.initial; });
+  });
 }
 
 TEST_P(ParticlesOn, every_field_comes_back) {
@@ -132,10 +148,12 @@ TEST_P(ParticlesOn, fields_without_need_take_no_memory_and_read_as_initial) {
     auto view = points.view();
     visit_particle_fields(check, view);
     EXPECT_EQ(points.bytes(), bytes);
-    expect_fields(points.download(), state, Kept::in_checkpoint, count,
-                  [](const ParticleField& field, const auto& old, std::size_t p) {
-                    return nothing_more.*field.needed_by ? old[p] : field.initial;
-                  });
+    expect_fields(
+        points.download(), state, Kept::in_checkpoint, count,
+        [](const ParticleField& field, const auto& old, std::size_t p) {
+          return nothing_more.*field.needed_by ? old[p] : field.initial;
+        },
+        nothing_more);
   });
 }
 

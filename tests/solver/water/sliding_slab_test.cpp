@@ -95,6 +95,7 @@ TEST_P(SlidingSlab, stops_as_its_pressure_drains) {
     const SolveOptions o = options_of(s, integrator);
     const auto set = [&](Scene& scene) {
       const double on_bed = o.material.density * 9.81 * std::cos(s.slope * degree) * thick;
+      scene.points.effective_stress.resize(scene.points.size());
       for (std::size_t p = 0; p < scene.points.size(); ++p) {
         const double z = (scene.points.cell[2][p] + scene.points.offset[2][p]) * scene.grid.layer_height / depth;
         scene.points.effective_stress[p] = on_bed * ((1 - hydrostatic) * (1 - z) - excess * std::cos(M_PI / 2 * z));

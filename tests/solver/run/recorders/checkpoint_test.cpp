@@ -142,7 +142,7 @@ void expect_same_points(const ParticleState& a, const ParticleState& b) {
   visit_particle_fields(
       [](const ParticleField& field, int component, const auto& list, const auto& other) {
         EXPECT_EQ(list, other) << field.name_of(component);
-        EXPECT_EQ(list.empty(), field.kept == Kept::within_step) << field.name_of(component);
+        EXPECT_EQ(list.empty(), field.kept == Kept::within_step || may_be_empty(field)) << field.name_of(component);
       },
       a, b);
 }
@@ -320,7 +320,10 @@ TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it)
   refused([](Checkpoint& c) { c.state.points.id.assign(5, 0); }, no_fit + "it holds 5 points");
   refused(
       [](Checkpoint& c) {
-        visit_particle_fields([](const ParticleField&, int, auto& list) { list.push_back(list[0]); }, c.state.points);
+        const auto twice = [](const ParticleField&, int, auto& list) {
+          if (!list.empty()) list.push_back(list[0]);
+        };
+        visit_particle_fields(twice, c.state.points);
         c.state.points.piece = {2, 5};
       },
       no_fit + "two points have the id 0 and share a piece of it)");
