@@ -258,7 +258,7 @@ void Particles<Real, Device>::upload(const ParticleState& state) {
     if (!holds(field)) return;
     if (field.kept == Kept::within_step) {
       array.resize(state.size());
-    } else if (list.empty()) {
+    } else if (may_be_empty(field) && list.empty()) {
       upload_list(array, std::decay_t<decltype(list)>(state.size(), field.initial));
     } else {
       upload_list(array, list);
@@ -274,7 +274,7 @@ void Particles<Real, Device>::append(const ParticleState& more) {
     if (!holds(field)) return;
     if (field.kept == Kept::within_step) {
       array.resize(all);
-    } else if (list.empty()) {
+    } else if (may_be_empty(field) && list.empty()) {
       append_list(array, std::decay_t<decltype(list)>(more.size(), field.initial));
     } else {
       append_list(array, list);

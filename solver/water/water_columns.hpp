@@ -98,6 +98,7 @@ struct WaterToPoints : WaterStep<Real> {
       inflow = (high.inflow - low.inflow) / apart;
     }
   };
+
   /// The effective stress at the start under a load [Pa].
   TALUS_HD Real first(int p, const CellsAround<Real, Shape>& at, Real load) const {
     const Real pull = -dot(this->gravity.at(*clock), at.normal);
