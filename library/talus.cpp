@@ -95,7 +95,7 @@ class MemoryKeeper : public solver::RunKeeper {
  public:
   MemoryKeeper(solver::RunLoop& loop, Keeper& keeper) : loop_(loop), keeper_(keeper) {}
 
-  void put_frame(double time, std::int64_t) override {
+  void put_frame(double time) override {
     frames.time.push_back(time);
     frames.thickness.push_back(loop_.stepper().solver().thickness());
   }

@@ -3,4 +3,4 @@
 // talus-solve: from domain.vdb to run.h5.
 #include "solver/stage.hpp"
 
-int main(int argc, char** argv) { return talus::run_stage(argc, argv, talus::solver::stage()); }
+int main(int argc, char** argv) { talus::solver::end_process(talus::run_stage(argc, argv, talus::solver::stage())); }

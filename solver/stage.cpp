@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/stage.hpp"
 
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -134,13 +139,15 @@ Facts run_members_of(StageContext& context, const SolveFlags& flags, const std::
 /// This function does what the recipe asks for: an ensemble, a search for the factor of safety, or a run in time. It
 /// returns the facts for the used recipe; of a run, `options` then name the stiffness that was settled for its scene.
 Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& options) {
-  const AnyDevice device = make_device(choose_device(flags.on));
+  // The context of a GPU takes longer than all that is read and planned.
+  std::future<AnyDevice> making =
+      std::async(std::launch::async, [&flags] { return make_device(choose_device(flags.on)); });
   const auto domain_file = inputs_of(options, context.out).front();
   const auto domain = std::make_shared<const Domain>(read_domain(domain_file));
   judge_inputs(context, options, domain_file, *domain);
   for (const std::string& text : idle_places(options, domain->places)) log_info(text);
   options = with_places(std::move(options), domain->places);
-  if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, device);
+  if (ensemble_of(context.recipe).on()) return run_members_of(context, flags, domain, options, making.get());
   if (flags.members || flags.at_a_time > 0)
     throw RecipeError({flags.members ? "--members without an ensemble" : "--at-a-time without an ensemble",
                        "the recipe asks for one run", "Leave it out, or add [ensemble] with members"});
@@ -148,12 +155,12 @@ Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& optio
     const auto made = plan(domain, options);
     for (const std::string& reason : made->reasons) log_info(reason);
     options = noted_options(*made);
-    return run_in_time(context, flags.run, made, device);
+    return run_in_time(context, flags.run, made, making.get());
   }
   refuse_flags_of_runs(flags);
   options = with_map_threshold(std::move(options), *domain);
   context.check_only = context.check_only || flags.run.plan;
-  return find_stability(context, options, device, *domain);
+  return find_stability(context, options, making.get(), *domain);
 }
 
 /// This function does what the recipe asks for, and notes what was used.
@@ -187,6 +194,12 @@ Stage stage() {
     solve(context, *given);
   };
   return s;
+}
+
+void end_process(int code) {
+  if (!gpu_was_used()) std::exit(code);
+  std::fflush(nullptr);
+  ::_exit(code);
 }
 
 }  // namespace talus::solver

@@ -10,4 +10,8 @@ namespace talus::solver {
 /// The stage with flags of its own: each call of the function makes another set of flags.
 Stage stage();
 
+/// Ends the process with this exit code, once all files are closed. Where a GPU was used it ends at once: to take the
+/// GPU's context apart takes longer than many runs, and the system does so in any case.
+[[noreturn]] void end_process(int code);
+
 }  // namespace talus::solver

@@ -17,6 +17,7 @@
 #include "common/stage/context.hpp"
 #include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/stage.hpp"
 #include "talus/commands.hpp"
 
 namespace {
@@ -214,9 +215,8 @@ int guarded(int argc, char** argv, std::optional<RedirectLog>& json) {
   return asked.command();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The command, and the exit code of its process.
+int run(int argc, char** argv) {
   report_crashes("talus");
   h5::prepare_library();
   Context own;
@@ -231,3 +231,7 @@ int main(int argc, char** argv) {
   if (code == static_cast<int>(ExitCode::interrupted)) fmt::print(stderr, "talus: the same command goes on\n");
   return code;
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { solver::end_process(run(argc, argv)); }

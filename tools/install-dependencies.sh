@@ -21,7 +21,7 @@ build=(
   libgdal-dev libhdf5-dev libnetcdf-dev libcgal-dev libssl-dev
   libopenvdb-dev libboost-iostreams-dev libblosc-dev
   libopenturns-dev
-  libcairo2-dev fonts-dejavu-core zlib1g-dev
+  libcairo2-dev fonts-dejavu-core libdeflate-dev
   # what report.html is made of, and what bundles its scripts
   libjs-leaflet libjs-chart.js libjs-three esbuild
 )

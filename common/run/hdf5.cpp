@@ -104,14 +104,17 @@ File::File(File&& other) noexcept
       plain_(other.plain_) {}
 
 File::~File() {
-  for (const auto& [path, set] : growing_) H5Dclose(set);
+  for (const auto& [path, growing] : growing_) H5Dclose(growing.set);
   if (id_ >= 0 && H5Fclose(id_) < 0) end_before_libraries();
 }
 
 void File::close() {
   while (!growing_.empty()) {
     const auto node = growing_.extract(growing_.begin());
-    if (H5Dclose(node.mapped()) < 0) fail(node.key());
+    Growing& last = node.mapped();
+    Id set(last.set, H5Dclose);
+    store(node.key(), last, last.rows_waiting);
+    if (!set.close()) fail(node.key());
   }
   if (H5Fflush(id_, H5F_SCOPE_LOCAL) < 0) fail("the end of the file");
   if (H5Fclose(std::exchange(id_, hid_t{-1})) >= 0) return;

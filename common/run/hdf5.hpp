@@ -190,7 +190,16 @@ class File {
   void write_raw(const std::string& path, const Dims& dims, hid_t type, const void* data, std::size_t count);
   void append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
                   std::size_t count);
-  hid_t create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type);
+  /// A dataset of append(): rows wait until they fill a chunk.
+  struct Growing {
+    hid_t set;
+    Dims shape, chunk;  // of what is in the file
+    std::size_t width;  // bytes of a value
+    std::string waiting = {};
+    hsize_t rows_waiting = 0;
+  };
+  Growing create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type);
+  void store(const std::string& path, Growing& growing, hsize_t rows);
   std::size_t checked_count(const std::string& path, const Dims& expected, hid_t type) const;
   std::size_t checked_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row, hid_t type) const;
   [[noreturn]] void refuse_shape(const std::string& path, const Dims& found, const std::string& why) const;
@@ -201,7 +210,7 @@ class File {
   hid_t id_;
   Naming naming_;
   bool writing_;
-  std::map<std::string, hid_t> growing_;  ///< datasets of append(), open so that HDF5 keeps their last, partial chunks
+  std::map<std::string, Growing> growing_;
   bool plain_ = false;
 };
 

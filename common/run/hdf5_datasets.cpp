@@ -6,13 +6,16 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
+#include "common/deflate.hpp"
 #include "common/run/hdf5.hpp"
 
 namespace talus::h5 {
 namespace {
 
-/// Chunks of about 2^15 values: a good size for the cache HDF5 keeps (1 MiB) and for reading one map or one frame.
+/// Chunks of about 2^15 values: a good size for the cache HDF5 keeps (1 MiB) and for reading one map or one frame. A
+/// chunk is one piece of the values in memory: whole in its last dimensions, a part of one, one of each before.
 Dims chunk_of(const Dims& dims) {
   Dims chunk = dims;
   hsize_t left = 1 << 15;
@@ -23,13 +26,55 @@ Dims chunk_of(const Dims& dims) {
   return chunk;
 }
 
+constexpr int effort = 1;  // of libdeflate: 4 takes twice as long for 2 % less
+
 herr_t set_compression(hid_t list, const Dims& chunk) {
   if (H5Pset_chunk(list, static_cast<int>(chunk.size()), chunk.data()) < 0 || H5Pset_shuffle(list) < 0) return -1;
-  return H5Pset_deflate(list, 4);
+  return H5Pset_deflate(list, effort);
 }
 
-std::size_t product(const Dims& dims) {
+std::size_t product(std::span<const hsize_t> dims) {
   return std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>());
+}
+
+/// A chunk as HDF5's filters store it: all first bytes of its values, all second ones, ..., deflated. What `values`
+/// lack of `bytes` are zeros.
+std::string packed(std::span<const char> values, std::size_t bytes, std::size_t width) {
+  std::string shuffled(bytes, '\0');
+  const std::size_t count = bytes / width;
+  for (std::size_t b = 0; b < width; ++b)
+    for (std::size_t n = 0; n < values.size() / width; ++n) shuffled[b * count + n] = values[n * width + b];
+  return deflated(shuffled, effort);
+}
+
+/// Writes values of the shape `block`, the first of whose rows is row `first` of the dataset, and returns whether that
+/// worked. Chunks are packed on all threads, and handed to HDF5, which would pack them on one, as they are stored.
+bool write_chunks(hid_t set, hsize_t first, const Dims& block, const Dims& chunk, std::size_t width, const char* data) {
+  constexpr std::size_t at_a_time = 64;
+  std::size_t cut = 0;  // the dimension of which a chunk has a part
+  while (cut + 1 < chunk.size() && chunk[cut] == 1) ++cut;
+  const std::size_t row =
+      product(std::span(block).subspan(cut + 1)) * width;  // of the values from one index to the next
+  const std::size_t parts = (block[cut] + chunk[cut] - 1) / chunk[cut];
+  const std::size_t count = product(std::span(block).first(cut)) * parts;
+  std::vector<std::string> stored(std::min(count, at_a_time));
+  for (std::size_t begin = 0; begin < count; begin += at_a_time) {
+    const std::size_t end = std::min(begin + at_a_time, count);
+    tbb::parallel_for(begin, end, [&](std::size_t c) {
+      const std::size_t from = c % parts * chunk[cut], rows = std::min<std::size_t>(chunk[cut], block[cut] - from);
+      stored[c - begin] = packed({data + (c / parts * block[cut] + from) * row, rows * row}, chunk[cut] * row, width);
+    });
+    for (std::size_t c = begin; c < end; ++c) {
+      Dims offset(block.size(), 0);
+      offset[cut] = c % parts * chunk[cut];
+      std::size_t left = c / parts;
+      for (std::size_t d = cut; d-- > 0; left /= block[d]) offset[d] = left % block[d];
+      offset[0] += first;
+      const std::string& bytes = stored[c - begin];
+      if (H5Dwrite_chunk(set, H5P_DEFAULT, 0, offset.data(), bytes.size(), bytes.data()) < 0) return false;
+    }
+  }
+  return true;
 }
 
 /// "3 x 4"
@@ -41,14 +86,19 @@ void File::write_raw(const std::string& path, const Dims& dims, hid_t type, cons
   if (product(dims) != count) throw std::logic_error(fmt::format("{}: {} values do not fill its shape", path, count));
   const Id space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   const Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  if (count > 0 && !plain_) set_compression(list, chunk_of(dims));
+  const bool plain = plain_ || count == 0 || dims.empty();
+  if (!plain) set_compression(list, chunk_of(dims));
   Id set(H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose);
-  if (set.bad() || (count > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) || !set.close())
-    fail(path);
+  const auto written = [&] {
+    if (count == 0) return true;
+    if (plain) return H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+    return write_chunks(set, 0, dims, chunk_of(dims), H5Tget_size(type), static_cast<const char*>(data));
+  };
+  if (set.bad() || !written() || !set.close()) fail(path);
 }
 
-hid_t File::create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type) {
-  // A chunk is packed when it is full: one of 64 appends is seldom packed twice, and a short list is still small.
+File::Growing File::create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type) {
+  // A short list stays small.
   Dims dims{0}, limit{H5S_UNLIMITED}, whole{std::clamp<hsize_t>(64 * rows, 1 << 10, 1 << 15)};
   dims.insert(dims.end(), row.begin(), row.end());
   limit.insert(limit.end(), row.begin(), row.end());
@@ -58,7 +108,7 @@ hid_t File::create_extendible(const std::string& path, hsize_t rows, const Dims&
   set_compression(list, chunk_of(whole));
   const hid_t set = H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT);
   if (set < 0) fail(path);
-  return set;
+  return {.set = set, .shape = dims, .chunk = chunk_of(whole), .width = H5Tget_size(type)};
 }
 
 void File::append_raw(const std::string& path, hsize_t rows, const Dims& row, hid_t type, const void* data,
@@ -67,19 +117,23 @@ void File::append_raw(const std::string& path, hsize_t rows, const Dims& row, hi
     throw std::logic_error(fmt::format("{}: {} values do not fill {} rows", path, count, rows));
   auto found = growing_.find(path);
   if (found == growing_.end()) found = growing_.emplace(path, create_extendible(path, rows, row, type)).first;
-  if (count == 0) return;
-  const hid_t set = found->second;
-  Dims start = dims(path), block = start;
+  Growing& growing = found->second;
+  growing.waiting.append(static_cast<const char*>(data), count * growing.width);
+  growing.rows_waiting += rows;
+  store(path, growing, growing.rows_waiting / growing.chunk[0] * growing.chunk[0]);
+}
+
+/// The method writes the first of the rows that wait.
+void File::store(const std::string& path, Growing& growing, hsize_t rows) {
+  if (rows == 0) return;
+  Dims block = growing.shape;
   block[0] = rows;
-  Dims grown = start;
-  grown[0] += rows;
-  std::fill(start.begin() + 1, start.end(), 0);
-  if (H5Dset_extent(set, grown.data()) < 0) fail(path);
-  const Id space(H5Dget_space(set), H5Sclose);
-  const Id memory(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
-  if (H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) < 0 ||
-      H5Dwrite(set, type, memory, space, H5P_DEFAULT, data) < 0)
+  const hsize_t first = std::exchange(growing.shape[0], growing.shape[0] + rows);
+  if (H5Dset_extent(growing.set, growing.shape.data()) < 0 ||
+      !write_chunks(growing.set, first, block, growing.chunk, growing.width, growing.waiting.data()))
     fail(path);
+  growing.waiting.erase(0, product(block) * growing.width);
+  growing.rows_waiting -= rows;
 }
 
 Dims File::dims(const std::string& path) const {

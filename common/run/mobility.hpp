@@ -22,7 +22,7 @@ struct Motion {
 };
 
 /// Read velocity and volume of the points, a part at a time. Empty where the run has no frames of points
-/// (point_frames = false). Throws DataError: unreadable.
+/// (point_frames = "none"). Throws DataError: unreadable.
 Motion read_motion(const std::filesystem::path& run_file, double faster_than);
 
 /// A place on the ground [m].

@@ -32,8 +32,8 @@ class VtkHdfPoints {
 /// The frames of points in a file that read_run() has read (and so checked its seal).
 class PointFrames {
  public:
-  /// Opens the file. A run without points (point_frames = false) has no frames, or frames of 0 points. Throws DataError
-  /// where the file cannot be read, or its lists do not go together.
+  /// Opens the file. A run without points has no frames, or frames of 0 points. Throws DataError where the file cannot
+  /// be read, or its lists do not go together.
   explicit PointFrames(const std::filesystem::path& run_file);
   ~PointFrames();
 

@@ -140,12 +140,12 @@ RunMaps read_maps(const h5::File& file) {
 
 RunFrames read_frames(const h5::File& file, const MapGrid& grid) {
   RunFrames frames;
-  if (!file.exists("/frames/time")) return frames;
-  frames.time = file.read_list<double>("/frames/time");
-  h5::check_growing(file, "/frames/time", frames.time, h5::a_time);
+  if (!file.exists(frame_times)) return frames;
+  frames.time = file.read_list<double>(frame_times);
+  h5::check_growing(file, frame_times, frames.time, h5::a_time);
   auto shape = h5::shape_of(grid);
   shape.insert(shape.begin(), frames.time.size());
-  const auto all = file.read<double>("/frames/thickness", shape, h5::thickness_or_none);
+  const auto all = file.read<double>(frame_thickness, shape, h5::thickness_or_none);
   for (std::size_t i = 0; i < frames.time.size(); ++i) {
     const auto start = all.begin() + static_cast<std::ptrdiff_t>(i * grid.count());
     frames.thickness.emplace_back(start, start + static_cast<std::ptrdiff_t>(grid.count()));
@@ -193,6 +193,11 @@ struct RunWriter::Open {
     h5::set_format(file, run_format);
     file.make_group("/frames");
   }
+  void close(const std::filesystem::path& name) {
+    file.close();
+    seal_file(pending.path(), name);
+    pending.commit(name);
+  }
 };
 
 RunWriter::RunWriter(std::filesystem::path file) : open_(std::make_unique<Open>(std::move(file))) {}
@@ -204,8 +209,14 @@ void RunWriter::append_thickness(double time, const MapGrid& grid, const std::ve
   if (!open_->frame_grid) open_->frame_grid = grid;
   if (open_->frame_grid->columns != grid.columns || open_->frame_grid->rows != grid.rows)
     throw std::logic_error("RunWriter: thickness frames on different grids");
-  open_->file.append<double>("/frames/time", 1, {}, std::span<const double>(&time, 1));
-  open_->file.append<double>("/frames/thickness", 1, h5::shape_of(grid), thickness);
+  open_->file.append<double>(frame_times, 1, {}, std::span<const double>(&time, 1));
+  open_->file.append<double>(frame_thickness, 1, h5::shape_of(grid), thickness);
+}
+
+void RunWriter::end_part(const std::filesystem::path& part, const std::string& id) {
+  open_->points.finish();
+  open_->file.set_text("/", run_mark, id);
+  open_->close(part);
 }
 
 void RunWriter::finish(const RunMaps& maps, const RunHistory& history, const RunSummary& summary) {
@@ -213,9 +224,7 @@ void RunWriter::finish(const RunMaps& maps, const RunHistory& history, const Run
   write_maps(open_->file, maps);
   write_history(open_->file, history);
   write_summary(open_->file, summary);
-  open_->file.close();
-  seal_file(open_->pending.path(), open_->pending.final_path());
-  open_->pending.commit();
+  open_->close(open_->pending.final_path());
 }
 
 Run read_run(const std::filesystem::path& path) {

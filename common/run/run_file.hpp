@@ -124,6 +124,9 @@ struct PointFrame {
   std::vector<std::int32_t> id, release;
 };
 
+/// Datasets of frames of thickness, and the attribute of / that says which run a part belongs to.
+inline constexpr const char *frame_times = "/frames/time", *frame_thickness = "/frames/thickness", *run_mark = "run_id";
+
 /// Writes run.h5, aside until finish(). Group VTKHDF (UnstructuredGrid of vertices, Steps) holds the points so that
 /// ParaView opens the file as it is; groups maps, frames, history and attributes of / hold the rest.
 /// Every failed HDF5 call (disk full) is a DataError.
@@ -134,6 +137,9 @@ class RunWriter {
   void append(const PointFrame& frame);  ///< writes the points of one frame
   /// Writes the thickness at one time [m]; all frames are on one grid (std::logic_error otherwise).
   void append_thickness(double time, const MapGrid& grid, const std::vector<double>& thickness);
+  /// Closes the file with its frames alone, as a part of the run of this id, and gives it this name, in a folder of the
+  /// same file system. Throws DataError.
+  void end_part(const std::filesystem::path& part, const std::string& id);
   /// Writes the rest, closes the file and gives it its name. Throws DataError.
   void finish(const RunMaps& maps, const RunHistory& history, const RunSummary& summary);
 

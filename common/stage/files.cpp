@@ -300,13 +300,12 @@ PendingFile::~PendingFile() {
   spare(partial_);
 }
 
-void PendingFile::commit() {
-  if (const int code = sync_to_disk(partial_, O_RDONLY); code != 0)
-    throw DataError(write_fault(final_, reason_of(code)));
-  if (::rename(partial_.c_str(), final_.c_str()) != 0) throw DataError(write_fault(final_, reason_of(errno)));
+void PendingFile::commit(const fs::path& name) {
+  if (const int code = sync_to_disk(partial_, O_RDONLY); code != 0) throw DataError(write_fault(name, reason_of(code)));
+  if (::rename(partial_.c_str(), name.c_str()) != 0) throw DataError(write_fault(name, reason_of(errno)));
   committed_ = true;
   spare(partial_);
-  sync_folder(final_.parent_path());  // where the rename itself lives
+  sync_folder(name.parent_path());  // where the rename itself lives
 }
 
 void make_folder(const fs::path& folder) {

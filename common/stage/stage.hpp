@@ -150,7 +150,10 @@ class PendingFile {
   ~PendingFile();
   const std::filesystem::path& path() const { return partial_; }  ///< write here
   const std::filesystem::path& final_path() const { return final_; }
-  void commit();  ///< throws DataError when it cannot be synced or renamed (disk full), or its folder not synced
+  void commit() { commit(final_); }
+  /// Throws DataError when it cannot be synced or renamed (disk full), or its folder not synced. `name`: another one,
+  /// in the same file system.
+  void commit(const std::filesystem::path& name);
 
  private:
   std::filesystem::path final_, partial_;

@@ -94,7 +94,7 @@ def reference(steps):
 
 
 FRANK = "pipelines/frank-slide/recipe.toml"
-FRAMELESS = {"solve": {"point_frames": False}}
+FRAMELESS = {"solve": {"point_frames": "none"}}
 SAND = "tests/validation/A3/recipe.toml"
 
 
@@ -106,7 +106,7 @@ def sand(cell):
             "box": [{"name": "sand", "extent_m": [0.0, 0.0, 0.09, cell, 0.0, 0.63]}],
             "grid": {"points_per_cell": [3, 3, 3]},
         },
-        "solve": {"point_frames": False, "frame_interval_s": 1.5},
+        "solve": {"point_frames": "none", "frame_interval_s": 1.5},
         "walls_at": cell,
     }  # fmt: skip
 
@@ -130,10 +130,10 @@ PICTURE = {
 STEPS = [
     Scene("frank", FRANK, 20, 10, 1e7, FRAMELESS),
     Scene("frank", FRANK, 20, 20, 8.1e9, FRAMELESS),
-    Scene("stiff-slide", FRANK, 40, 5, 8.1e9, {"solve": {"point_frames": False, "end_time_s": 40.0}}),
+    Scene("stiff-slide", FRANK, 40, 5, 8.1e9, {"solve": {"point_frames": "none", "end_time_s": 40.0}}),
     Scene("iseesnow", "pipelines/iseesnow/recipe.toml", 5, 1, None, FRAMELESS),
     Scene("xinmo", "pipelines/synthetic-xinmo/recipe.toml", 10, 10, None,
-          {"solve": {"point_frames": False, "energy_budget": False, "material": {"stiffness": "as-given"}}}),
+          {"solve": {"point_frames": "none", "energy_budget": False, "material": {"stiffness": "as-given"}}}),
     Scene("sand", SAND, 0.01125, 0.01125, None, sand(0.01125)),
 ]  # fmt: skip
 
@@ -146,7 +146,7 @@ SLAB = Scene("slab", "tests/validation/B1/recipe.toml", 1, 0.5, 1e8, {
         "box": [{"name": "slab", "extent_m": [10.0, 10.0, 70.0, 40.0, 0.0, 2.0]}],
     },
     "solve": {
-        "end_time_s": 600.0, "history_interval_s": 10.0, "frame_interval_s": 600.0, "point_frames": False,
+        "end_time_s": 600.0, "history_interval_s": 10.0, "frame_interval_s": 600.0, "point_frames": "none",
         "gravity_loading_steps": 10,
         "base": {"friction_angle_deg": 25.0},
     },

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <zlib.h>
 
+#include "common/deflate.hpp"
 #include "common/gis/escaped_xml.hpp"
 #include "common/recipe/paths.hpp"
 #include "common/stage/stage.hpp"
@@ -52,16 +52,6 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 }
 
 constexpr double most = 65534;  // of 65536: 0 is NaN
-
-std::string deflated(const std::string& bytes) {
-  auto size = compressBound(static_cast<uLong>(bytes.size()));
-  std::string packed(size, '\0');
-  const auto status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 9);
-  if (status != Z_OK) throw std::runtime_error("zlib: " + std::string(zError(status)));
-  packed.resize(size);
-  return packed;
-}
 
 /// One number for the cells of a block of `factor` x `factor` from (column, row) on, NaN left out.
 double merged(const Raster& raster, int column, int row, int factor, MergedCells merge) {
@@ -157,7 +147,7 @@ Json packed(const std::vector<std::vector<double>>& frames) {
       bytes[at] = static_cast<char>(q >> 8U);
       bytes[count + at++] = static_cast<char>(q & 0xFFU);
     }
-  return {{"offset", offset}, {"step", step}, {"bytes", base64(deflated(bytes))}};
+  return {{"offset", offset}, {"step", step}, {"bytes", base64(deflated(bytes, 9))}};
 }
 
 Json packed(const std::vector<double>& values) { return packed(std::vector<std::vector<double>>{values}); }

@@ -259,8 +259,8 @@ ThreeDSize size_of_three_d(const ThreeDParts& options, const Run& run, const Poi
 void check_three_d(const ThreeDParts& options, const Run& run, const PointFrames& points, double most) {
   if (options.points && points.most_points() == 0)
     throw DataError({"[postprocess] outputs has \"points\"",
-                     "the run holds no points over time ([solve] point_frames = false, or no frame interval)",
-                     "Run talus-solve with point_frames = true, or leave this out"});
+                     "the run holds no points over time ([solve] point_frames = \"none\", or no frame interval)",
+                     "Run talus-solve without point_frames, or leave this out"});
   const ThreeDSize size = size_of_three_d(options, run, points);
   const auto words = fmt::format("3d/ will take about {:.3g} MB (surface {:.3g}, terrain {:.3g}, points {:.3g})",
                                  size.all(), size.surface, size.terrain, size.points);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "postprocess/three_d/three_d.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "common/deflate.hpp"
 #include "common/gis/escaped_xml.hpp"
 #include "common/stage/files.hpp"
 #include "common/stage/stage.hpp"
@@ -25,7 +24,7 @@ namespace talus::postprocess {
 namespace {
 
 constexpr std::size_t block_bytes = 1 << 18;  // uncompressed; VTK takes any size
-constexpr int effort = 4;                     // of zlib: 9 takes four times as long for 2 % less
+constexpr int effort = 4;                     // of libdeflate
 
 template <class T>
 constexpr const char* vtk_type() {
@@ -77,15 +76,12 @@ class VtkText {
     number(bytes.size() % block_bytes);
     const std::size_t sizes = data_.size();
     data_.append(blocks * sizeof(std::uint64_t), '\0');
-    std::vector<Bytef> packed(compressBound(block_bytes));
     for (std::size_t b = 0; b < blocks; ++b) {
       const auto part = bytes.subspan(b * block_bytes, std::min(block_bytes, bytes.size() - b * block_bytes));
-      uLongf size = packed.size();
-      if (compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(part.data()), part.size(), effort) != Z_OK)
-        throw std::runtime_error("zlib cannot pack a block");
-      const std::uint64_t stored = size;
+      const std::string packed = deflated(part, effort);
+      const std::uint64_t stored = packed.size();
       std::memcpy(data_.data() + sizes + b * sizeof stored, &stored, sizeof stored);
-      data_.append(reinterpret_cast<const char*>(packed.data()), size);
+      data_ += packed;
     }
   }
 

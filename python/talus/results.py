@@ -97,7 +97,7 @@ class Run:
         on `axis` [m s-1], `volume` [m3], `pressure` [Pa, compression positive], `id`, `release`."""
         with h5py.File(self.file) as file:
             if "VTKHDF" not in file:
-                raise TalusError(f"{self.file}: it holds no points. Set solve.point_frames = true and run it again")
+                raise TalusError(f"{self.file}: it holds no points. Run it again without solve.point_frames")
             group, steps = file["VTKHDF"], file["VTKHDF/Steps"]
             times = steps["Values"][:]
             if not -len(times) <= frame < len(times):

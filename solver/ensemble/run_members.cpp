@@ -26,7 +26,7 @@ struct GivenUp {};
 /// Keeps nothing of a run, and gives it up where the process is interrupted.
 class MemberKeeper : public RunKeeper {
  public:
-  void put_frame(double, std::int64_t) override {}
+  void put_frame(double) override {}
   void pass_whole_state(bool) override {}
   void pass_batch(const BatchReport&) override {
     if (interrupted()) throw GivenUp{};

@@ -62,7 +62,11 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   v.optional_number("map_threshold_m", map_threshold, recipe::positive,
                     "thickness from which cells count: for speed, pressure, arrival, run-out and areas; not given: 0.1 "
                     "m, or 5 % of the median released thickness where that is less");
-  v.flag("point_frames", point_frames, "write the material points of each frame into run.h5");
+  recipe::choice(
+      v, "point_frames", point_frames,
+      {{"rounded", FramePoints::rounded}, {"exact", FramePoints::exact}, {"none", FramePoints::none}},
+      "material points of frames in run.h5; rounded: positions to a thousandth of a cell, velocity and pressure "
+      "to 1e-4 of themselves; the file is half as large");
   v.flag("energy_budget", energy_budget,
          "explicit and column-implicit steps: keep what is lost to the bed, to plastic flow, to damping and between "
          "points and grid, and "

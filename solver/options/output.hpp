@@ -53,13 +53,16 @@ struct SectionOptions {
   void describe(recipe::Visitor& v);
 };
 
+/// What frames hold of the material points.
+enum class FramePoints { none, rounded, exact };
+
 /// The keys of [solve] for what a run writes.
 struct OutputOptions {
   double frame_interval = 10;           ///< [s]
   double history_interval = 0.5;        ///< [s]
   double checkpoint_interval = 0;       ///< simulated [s]; 0: only when interrupted
   std::optional<double> map_threshold;  ///< [m]; empty: by the release, which plan() settles
-  bool point_frames = true;
+  FramePoints point_frames = FramePoints::rounded;
   bool energy_budget = false;
   bool deterministic = false;
   std::vector<std::string> accept;  ///< what is refused as implausible, insisted on by name

@@ -66,6 +66,8 @@ class GpuDevice {
 
 /// Whether this binary holds GPU kernels and the machine has a device they run on.
 bool gpu_available();
+/// Whether this process has made a GpuDevice.
+bool gpu_was_used();
 /// The name of a GPU, such as "NVIDIA H200"; empty without one.
 std::string gpu_name(int index = 0);
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // GPU devices: streams, memory, events, recordings. Without a CUDA compiler this file states that there is no GPU.
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -17,6 +18,8 @@ namespace talus {
 namespace {
 
 __global__ void probe() {}
+
+std::atomic<bool> gpu_used = false;
 
 /// This function lets the GPU's memory pool keep what is freed for the next allocation of this process, whichever
 /// stream asks: cudaMalloc and cudaFree wait for all streams.
@@ -39,6 +42,7 @@ void check_cuda(cudaError_t code, const char* what) {
 }
 
 GpuState::GpuState(int gpu) : index(gpu) {
+  gpu_used = true;
   check_cuda(cudaSetDevice(index), "cudaSetDevice");
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "stream");
   keep_memory(index);
@@ -100,6 +104,8 @@ bool gpu_available() {
   }();
   return available;
 }
+
+bool gpu_was_used() { return gpu_used; }
 
 std::string gpu_name(int index) {
   cudaDeviceProp properties;
@@ -253,6 +259,7 @@ int GpuDevice::index() const { absent(); }
 CUstream_st* GpuDevice::stream() const { absent(); }
 Profile& GpuDevice::profile() const { absent(); }
 bool gpu_available() { return false; }
+bool gpu_was_used() { return false; }
 std::string gpu_name(int) { return {}; }
 void synchronise(const GpuDevice&) {}
 

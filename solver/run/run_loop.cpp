@@ -175,7 +175,7 @@ void RunLoop::record(double time, RunKeeper& keeper) {
 }
 
 void RunLoop::put_frame(double time, RunKeeper& keeper) {
-  keeper.put_frame(time, memory_.frames);
+  keeper.put_frame(time);
   ++memory_.frames;
 }
 

@@ -82,8 +82,8 @@ class RunTimer {
 class RunKeeper {
  public:
   virtual ~RunKeeper() = default;
-  /// A frame is due at `time` [s], the `number`th from 0.
-  virtual void put_frame(double time, std::int64_t number) = 0;
+  /// A frame is due at `time` [s].
+  virtual void put_frame(double time) = 0;
   /// The history has a record at `time` [s]. The run ends here where the method returns false.
   virtual bool pass_record(double /*time*/) { return true; }
   virtual void pass_batch(const BatchReport& batch) = 0;  ///< a batch of steps has been taken

@@ -72,8 +72,9 @@ void judge_inputs(const StageContext& context, const SolveOptions& o, const std:
 }
 
 void remove_leftovers(const RunPaths& paths) {
-  remove_for_good(paths.checkpoint);
-  FrameStore(paths.frames).clear();
+  remove_for_good(paths.checkpoint);  // before the frames that it counts on
+  std::error_code ignored;
+  std::filesystem::remove_all(paths.frames, ignored);
 }
 
 Simulation::Simulation(std::shared_ptr<const Plan> plan, const AnyDevice& device, RunPaths paths,
@@ -81,13 +82,13 @@ Simulation::Simulation(std::shared_ptr<const Plan> plan, const AnyDevice& device
     : paths_(std::move(paths)),
       marks_{std::move(fingerprint)},
       loop_(std::move(plan), device),
-      frames_(loop_.scene(), loop_.options(), paths_.frames) {}
+      frames_(loop_.scene(), loop_.options(), paths_.frames, paths_.run) {}
 
 void Simulation::resume(const std::filesystem::path& file) {
   Checkpoint checkpoint = read_checkpoint(file, marks_.fingerprint);
   check_checkpoint(file, checkpoint, loop_.scene());
   frames_.belong_to(checkpoint.id);
-  frames_.expect(checkpoint.memory.frames);
+  frames_.go_on_after(checkpoint.memory.frames);
   marks_.id = checkpoint.id;
   marks_.stop_reason = checkpoint.stop_reason;
   timer_.resume(checkpoint.memory.wall_time);
@@ -147,7 +148,7 @@ void Simulation::save_checkpoint() {
   RunMemory& memory = loop_.memory();
   memory.wall_time = timer_.seconds();
   loop_.history().keep(memory);
-  frames_.settle();  // a checkpoint counts on its frames
+  frames_.save(memory.frames);  // a checkpoint counts on its frames
   write_checkpoint(paths_.checkpoint,
                    {marks_.fingerprint, marks_.id, marks_.stop_reason, loop_.stepper().solver().state(), memory});
   frames_.drop_others();  // of the run whose checkpoint this one has replaced
@@ -163,22 +164,17 @@ RunSummary Simulation::finish(RunSummary summary, const Findings& found) {
   summary.findings.insert(summary.findings.end(), found.list().begin(), found.list().end());
   write_run(end, summary);
   log_detail(fmt::format("files: {:.1f} s after the last step", timer_.seconds() - loop_.memory().wall_time));
-  remove_for_good(paths_.checkpoint);  // the run is whole: nothing is left to go on with
-  frames_.clear();                     // after the checkpoint that counts on them
+  remove_leftovers(paths_);
   return summary;
 }
 
 /// The method writes run.h5, which takes the place of an older one once it is whole.
 void Simulation::write_run(const RunEnd& end, const RunSummary& summary) {
-  frames_.settle();
-  RunWriter writer(paths_.run);
-  for (std::int64_t number = 0; number < loop_.memory().frames; ++number) {
-    if (interrupted()) {  // the file of many points takes long; the checkpoint says that no step is left
-      save_checkpoint();
-      stop();
-    }
-    frames_.append_to(writer, number);
-  }
+  RunWriter& writer = frames_.whole(loop_.memory().frames, [this] {
+    if (!interrupted()) return;  // the file of many points takes long; the checkpoint says that no step is left
+    save_checkpoint();
+    stop();
+  });
   writer.finish(final_maps(end, loop_.stepper().solver().thickness()), loop_.history().rows(), summary);
 }
 

@@ -75,7 +75,7 @@ class Simulation : private RunKeeper {
                  const std::optional<std::vector<Finding>>& findings = {});
 
  private:
-  void put_frame(double time, std::int64_t number) override { frames_.put(time, number, loop_.stepper().solver()); }
+  void put_frame(double time) override { frames_.put(time, loop_.stepper().solver()); }
   void pass_batch(const BatchReport& batch) override;
   void pass_whole_state(bool checkpoint_due) override;
   [[noreturn]] void stop();

@@ -19,7 +19,7 @@ long_scene() {
 
 test_solve_leaves_a_checkpoint() {
   long_scene
-  interrupt INT 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  interrupt INT 'out/.run.h5.*.partial' "$bin/talus-solve" recipe.toml --out out --on cpu
   [[ -s out/checkpoint.h5 ]] || fail "no checkpoint was left"
   expect_words "(interrupted). Go on with --restart; out/checkpoint.h5 holds the state"
   grep -q 'stopped at t' out/solve.log || fail "the log does not say that it was stopped: $(<out/solve.log)"
@@ -29,7 +29,7 @@ test_solve_leaves_a_checkpoint() {
 
 test_termination_is_the_same() {
   long_scene
-  interrupt TERM 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  interrupt TERM 'out/.run.h5.*.partial' "$bin/talus-solve" recipe.toml --out out --on cpu
   [[ -s out/checkpoint.h5 ]] || fail "no checkpoint was left"
   nothing_looks_finished
 }
@@ -81,10 +81,10 @@ test_a_run_that_fails_leaves_the_one_of_before() {
   expect_exit 0 solve
   cp out/run.h5 before.h5
   sed -i 's/^end_time_s.*/end_time_s = 1000000.0/' recipe.toml
-  interrupt KILL 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  interrupt KILL 'out/.run.h5.*.partial' "$bin/talus-solve" recipe.toml --out out --on cpu
   cmp out/run.h5 before.h5 || fail "the run of before is gone, or another one"
-  rm -r out/.frames   # of the killed run: the sign below is to be the next one's
-  interrupt TERM 'out/.frames/*/frame_00001.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  rm out/.run.h5.*.partial   # of the killed run: the sign below is to be the next one's
+  interrupt TERM 'out/.run.h5.*.partial' "$bin/talus-solve" recipe.toml --out out --on cpu
   cmp out/run.h5 before.h5 || fail "the run of before is gone, or another one"
   expect_exit 3 postprocess   # and nobody takes it for one of the new recipe
   expect_words "out/run.h5: another recipe made it"
@@ -110,7 +110,7 @@ test_a_checkpoint_of_another_recipe_stays_until_it_is_replaced() {
   make_checkpoint out
   cp out/checkpoint.h5 before.h5
   sed -i 's/^friction_angle_deg = 15.0/friction_angle_deg = 16.0/; s/^checkpoint_interval_s.*//' recipe.toml
-  interrupt KILL 'out/.frames/*/frame_00003.h5' "$bin/talus-solve" recipe.toml --out out --on cpu --resume
+  interrupt KILL 'out/.run.h5.*.partial' "$bin/talus-solve" recipe.toml --out out --on cpu --resume
   expect_words "a checkpoint of another domain or other [solve] settings; it stays until this run has one of its own"
   cmp out/checkpoint.h5 before.h5 || fail "the checkpoint of the other recipe is gone"
   sed -i 's/^friction_angle_deg = 16.0/friction_angle_deg = 15.0/; s/^end_time_s.*/&\ncheckpoint_interval_s = 5.0/' \
@@ -124,9 +124,9 @@ test_resume_without_frames_begins_anew() {
   make_checkpoint out
   rm -r out/.frames
   expect_exit 3 solve --restart
-  expect_words "this frame of the broken-off run is missing"
+  expect_words "frames of the broken-off run are missing"
   expect_exit 0 solve --resume
-  expect_words "this frame of the broken-off run is missing" "The run begins anew"
+  expect_words "frames of the broken-off run are missing" "The run begins anew"
 }
 
 # hears STAGE DELAY...: SIGTERM after each of these delays ends the stage with 130, in far less time than its work
@@ -197,7 +197,7 @@ linear_tolerance = 1e-14
 TOML
   expect_exit 0 preprocess
   begun=$SECONDS
-  interrupt TERM 'out/.frames/*/frame_00000.h5' "$bin/talus-solve" recipe.toml --out out --on cpu
+  interrupt TERM 'out/.run.h5.*.partial' "$bin/talus-solve" recipe.toml --out out --on cpu
   [[ $((SECONDS - begun)) -le 30 ]] || fail "the run took $((SECONDS - begun)) s from its start to its end"
   expect_words 'stopped at t = 0.000 s, step 0 (interrupted). Go on with --restart; out/checkpoint.h5 holds the state'
   nothing_looks_finished

@@ -78,7 +78,7 @@ test_a_killed_command_leaves_no_process() {
   scene
   local sign
   sed -i 's/^end_time_s.*/end_time_s = 100.0\nframe_interval_s = 1.0/' recipe.toml
-  for sign in 'out/.talus.lock' 'out/domain.vdb' 'out/.frames/*/frame_00001.h5' 'out/run.h5'; do
+  for sign in 'out/.talus.lock' 'out/domain.vdb' 'out/.run.h5.*.partial' 'out/run.h5'; do
     rm -rf out
     killed "$sign" "$bin/talus" run recipe.toml --out out --on cpu
   done

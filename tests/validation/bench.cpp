@@ -237,7 +237,9 @@ std::string Bench::run_stages(const std::string& variant, const Overrides& overr
   const fs::path out = folder(variant), recipe = out / "recipe.toml";
   fs::remove_all(out);
   fs::create_directories(out);
-  write_text(recipe, recipe_with(request_.recipes / name_.substr(0, name_.find('-')) / "recipe.toml", overrides));
+  const std::string text = recipe_with(request_.recipes / name_.substr(0, name_.find('-')) / "recipe.toml", overrides);
+  const bool measures_points = text.find("point_frames") == std::string::npos;
+  write_text(recipe, text);
   fmt::print(stderr, "{:4} {:44} ", name_, variant);
   std::fflush(stderr);
   for (const char* stage : {"talus-preprocess", "talus-solve"}) {
@@ -245,6 +247,7 @@ std::string Bench::run_stages(const std::string& variant, const Overrides& overr
     std::vector<std::string> words{(request_.programs / stage).string(), recipe.string(), "--out", out.string(), "-q"};
     const bool solves = stage == std::string("talus-solve");
     if (solves) words.insert(words.end(), {"--on", request_.on});
+    if (solves && measures_points) words.insert(words.end(), {"--set", "solve.point_frames=exact"});
     if (solves && profile) words.emplace_back("--profile");
     const int code = call(words, log);
     if (interrupted()) throw Interrupted({"stopped", "interrupted", "Run it again"});

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recorder of frames (points and thickness of the whole map at chosen times), and their files beside the run.
+// Recorder of frames (points and thickness of the whole map at chosen times), which are packed while the run goes on.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <future>
-#include <utility>
+#include <memory>
+#include <string>
 
 #include "common/run/run_file.hpp"
 #include "common/stage/context.hpp"
@@ -15,67 +17,75 @@
 
 namespace talus::solver {
 
-/// Work beside the run, one piece at a time.
+/// Work beside the run, in order; few pieces wait at a time, since each holds a copy of the points.
 class SideWork {
  public:
-  /// The method starts `work` once the piece before is done; it throws what that threw.
+  /// The method has `work` done after the pieces before; it throws what one of them threw, which ends them all.
   void start(std::function<void()> work) {
-    settle();
-    running_ = std::async(std::launch::async, [work = std::move(work), &here = context()] {
+    constexpr std::size_t most = 3;
+    while (pieces_.size() >= most) wait_for_first();
+    const auto before = pieces_.empty() ? std::shared_future<void>() : pieces_.back();
+    const auto piece = [before, work = std::move(work), &here = context()] {
+      if (before.valid()) before.get();
       const BindContext bind(here);
       work();
-    });
+    };
+    pieces_.push_back(std::async(std::launch::async, piece).share());
   }
-  /// The method waits until nothing is left to do; it throws what the last piece threw.
+  /// The method waits until nothing is left to do; it throws what a piece threw.
   void settle() {
-    if (running_.valid()) running_.get();
+    while (!pieces_.empty()) wait_for_first();
   }
 
  private:
-  std::future<void> running_;  ///< its destructor waits
-};
-
-/// A folder of frames by number, in a folder for every run, so that those of an older run stay until they are dropped.
-class FrameStore {
- public:
-  explicit FrameStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  /// From now on frames are those of this run; each carries its id. Empty: of a version that knew no ids.
-  void belong_to(const std::string& run_id) { run_id_ = run_id; }
-  void clear();              ///< drops all frames, of whichever run
-  void drop_others() const;  ///< drops the frames of other runs
-  /// The method writes one frame, aside and renamed at the end. It throws DataError (disk full, not writable).
-  void put(std::int64_t number, const PointFrame& points, const MapGrid& grid, const std::vector<double>& thickness);
-  /// The method throws DataError unless frames 0 .. count-1 are there.
-  void expect(std::int64_t count) const;
-  /// The method hands frame `number` to the run file. It throws DataError when it is missing or another run's.
-  void append_to(RunWriter& run, std::int64_t number, const MapGrid& grid) const;
-
- private:
-  std::filesystem::path file(std::int64_t number) const;
-  std::filesystem::path folder_;
-  std::string run_id_ = {};
+  void wait_for_first() {
+    const auto first = pieces_.front();
+    pieces_.pop_front();
+    first.get();
+  }
+  std::deque<std::shared_future<void>> pieces_;  ///< the destructor of the last holder of each waits
 };
 
 /// The points of a scene at `time` [s], in map coordinates.
 PointFrame point_frame(const Scene& scene, const SolveOptions& options, double time, const ParticleState& points);
 
-/// The recorder of frames, which are written while the run goes on.
-class FrameRecorder : public FrameStore {
+/// The recorder of frames. They go into the file that is to become run.h5. A checkpoint counts on those before it: what
+/// was recorded since the one before becomes a file of its own, in a folder for every run, so that those of an older
+/// run stay until they are dropped.
+class FrameRecorder {
  public:
-  /// The constructor keeps references to scene and options. Frames go to the folder `store` until the end of the run.
-  FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store);
+  /// The constructor keeps references to scene and options. `store`: the folder for frames that checkpoints count on.
+  FrameRecorder(const Scene& scene, const SolveOptions& options, std::filesystem::path store, std::filesystem::path run)
+      : scene_(scene), options_(options), store_(std::move(store)), file_(std::move(run)) {}
 
-  /// Takes the state at once; the file is written while the run goes on. It throws what writing the frame before threw.
-  void put(double time, std::int64_t number, Solver& solver);
-  /// The method waits until every frame is on disk. It throws what writing the last one threw. HDF5 does one thing at a
-  /// time: this is called before another file is written.
-  void settle() { writing_.settle(); }
-  void append_to(RunWriter& run, std::int64_t number) const { FrameStore::append_to(run, number, scene_.map); }
+  /// From now on frames are those of this run; each file carries its id.
+  void belong_to(const std::string& run_id) {
+    run_id_ = run_id;
+    saved_ = 0;
+  }
+  /// Takes the state at once; the frame is packed and written while the run goes on. It throws what that threw for a
+  /// frame before: DataError (disk full, not writable).
+  void put(double time, Solver& solver);
+  /// The method puts all `count` frames so far on disk for good. It throws DataError.
+  void save(std::int64_t count);
+  /// The method throws DataError unless the files of frames 0 .. count-1 are there, and goes on behind them.
+  void go_on_after(std::int64_t count);
+  /// The method returns the file that becomes run.h5, with all `count` frames; before each file of them that it takes
+  /// over it calls `pause`, which may throw. It throws DataError: one is missing, damaged or another run's.
+  RunWriter& whole(std::int64_t count, const std::function<void()>& pause);
+  void drop_others() const;  ///< drops saved frames of other runs
 
  private:
+  std::filesystem::path saved_file(std::int64_t first) const;
+  h5::File open_saved(std::int64_t first) const;
+
   const Scene& scene_;
   const SolveOptions& options_;
-  SideWork writing_;  ///< last: what it does needs the rest
+  std::filesystem::path store_, file_;
+  std::string run_id_;
+  std::int64_t saved_ = 0;          ///< frames in files of their own
+  std::unique_ptr<RunWriter> run_;  ///< the frames since, once there is one
+  SideWork writing_;                ///< last: what it does needs the rest
 };
 
 }  // namespace talus::solver

@@ -56,7 +56,7 @@ struct Watcher : RunKeeper {
   RunMemory memory = {};
 
   explicit Watcher(RunLoop& watched, double after = 1e300) : loop(watched), from(after) {}
-  void put_frame(double, std::int64_t) override {}
+  void put_frame(double) override {}
   void pass_batch(const BatchReport&) override {}
   void pass_whole_state(bool) override {
     if (state || loop.stepper().time() < from) return;

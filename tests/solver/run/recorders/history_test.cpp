@@ -3,6 +3,7 @@
 // The history of a run, points that are stretched far, the force on the ground, and frames.
 #include <numeric>
 
+#include "common/run/point_frames.hpp"
 #include "solver/run/recorders/forces.hpp"
 #include "solver/run/recorders/frames.hpp"
 #include "solver/run/recorders/history.hpp"
@@ -254,58 +255,95 @@ TEST(GroundForceColumns, are_left_out_where_momentum_does_not_say_it) {
   EXPECT_FALSE(GroundForceRecorder::measures(o));
 }
 
-TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
-  const test::Scratch scratch;
-  Domain d = filled(ground(12, 12, 1.0, 1.0, [](double x, double) { return 5 - 0.1 * x; }), {4, 8, 4, 8, 0, 2});
-  SolveOptions o;
-  const Scene scene = make_scene(d, o);
-  const auto solver = make_solver(scene, o, On::cpu);
-  FrameRecorder frames(scene, o, scratch / "frames");
-  frames.belong_to("a1");
-  frames.put(0, 0, *solver);
-  run_to(*solver, 0.1);
-  frames.put(0.1, 1, *solver);
-  frames.settle();
-  frames.expect(2);
-  EXPECT_THROW(frames.expect(3), DataError);
-  {
-    RunWriter writer(scratch / "run.h5");
-    for (const int number : {0, 1}) frames.append_to(writer, number);
-    RunMaps maps;
-    maps.grid = scene.map;
-    const std::vector<double> zero(scene.map.count(), 0.0);
-    maps.terrain = maps.before = maps.initial_thickness = maps.deposit_thickness = maps.peak_thickness = zero;
-    maps.peak_speed = maps.peak_pressure_kPa = maps.arrival_time = zero;
-    RunSummary summary;
-    summary.density = 2000;
-    writer.finish(maps, {}, summary);
-  }
-  const talus::Run run = read_run(scratch / "run.h5");
-  EXPECT_EQ(run.frames.time, (std::vector<double>{0, 0.1}));
-  EXPECT_EQ(run.frames.thickness.at(1), solver->thickness());
-  const auto& first = run.frames.thickness.at(0);
-  EXPECT_NEAR(std::accumulate(first.begin(), first.end(), 0.0), 4 * 4 * 2, 1e-9);
-  frames.clear();
-  EXPECT_THROW(frames.expect(1), DataError);
+/// The whole of a file that has its frames.
+void finish(RunWriter& run, const MapGrid& grid) {
+  RunMaps maps;
+  maps.grid = grid;
+  const std::vector<double> zero(grid.count(), 0.0);
+  maps.terrain = maps.before = maps.initial_thickness = maps.deposit_thickness = maps.peak_thickness = zero;
+  maps.peak_speed = maps.peak_pressure_kPa = maps.arrival_time = zero;
+  RunSummary summary;
+  summary.density = 2000;
+  run.finish(maps, {}, summary);
 }
 
-TEST(FrameStore, keeps_the_frames_of_runs_apart) {
-  const test::Scratch scratch;
-  const MapGrid grid{.columns = 1, .rows = 1, .west = 0, .south = 0, .cell = 1, .crs_wkt = ""};
-  FrameStore store(scratch / "frames");
-  for (const char* run : {"a1", "b2"}) {
-    store.belong_to(run);
-    store.put(0, {}, grid, {1.0});
+/// A block whose frames are recorded, and the folder of its files.
+struct RecordedBlock {
+  explicit RecordedBlock(FramePoints shown) {
+    options.point_frames = shown;
+    frames.belong_to("a1");
   }
-  store.belong_to("a1");
-  store.expect(1);
-  std::filesystem::copy_file(scratch / "frames/b2/frame_00000.h5", scratch / "frames/a1/frame_00001.h5");
-  RunWriter writer(scratch / "run.h5");
-  store.append_to(writer, 0, grid);
-  const std::string fault = test::fault_of<DataError>([&] { store.append_to(writer, 1, grid); });
-  EXPECT_NE(fault.find("frame_00001.h5: a frame of the run b2 (this is the run a1)"), std::string::npos) << fault;
-  store.drop_others();
-  EXPECT_EQ(test::names_in(scratch / "frames"), std::vector<std::string>{"a1"});
+  test::Scratch scratch;
+  SolveOptions options;
+  const Scene scene = make_scene(
+      filled(ground(12, 12, 1.0, 1.0, [](double x, double) { return 5 - 0.1 * x; }), {4, 8, 4, 8, 0, 2}), options);
+  const std::unique_ptr<Solver> solver = make_solver(scene, options, On::cpu);
+  FrameRecorder frames{scene, options, scratch / "frames", scratch / "run.h5"};
+  FrameRecorder resumed{scene, options, scratch / "frames", scratch / "run.h5"};
+  const std::function<void()> no_pause = [] {};
+};
+
+/// Frames of which some were saved for a checkpoint come in order, and are those of a run that was never broken off.
+TEST(FrameRecorder, hands_every_frame_to_the_run_file) {
+  RecordedBlock block(FramePoints::exact);
+  block.frames.put(0, *block.solver);
+  block.frames.save(1);
+  run_to(*block.solver, 0.1);
+  block.frames.put(0.1, *block.solver);
+  block.frames.save(2);
+  block.resumed.belong_to("a1");
+  block.resumed.go_on_after(2);
+  EXPECT_THROW(block.resumed.go_on_after(3), DataError);
+  block.resumed.go_on_after(2);
+  run_to(*block.solver, 0.2);
+  block.resumed.put(0.2, *block.solver);
+  finish(block.resumed.whole(3, block.no_pause), block.scene.map);
+  const talus::Run run = read_run(block.scratch / "run.h5");
+  EXPECT_EQ(run.frames.time, (std::vector<double>{0, 0.1, 0.2}));
+  EXPECT_EQ(run.frames.thickness.at(2), block.solver->thickness());
+  const auto& first = run.frames.thickness.at(0);
+  EXPECT_NEAR(std::accumulate(first.begin(), first.end(), 0.0), 4 * 4 * 2, 1e-9);
+  const PointFrames points(block.scratch / "run.h5");
+  EXPECT_EQ(points.time(), run.frames.time);
+  EXPECT_EQ(points.read(2).position, positions(block.scene, block.solver->shown()));
+}
+
+TEST(FrameRecorder, rounds_positions_to_a_thousandth_of_a_cell_and_velocities_to_a_ten_thousandth) {
+  RecordedBlock block(FramePoints::rounded);
+  run_to(*block.solver, 0.1);
+  block.frames.put(0.1, *block.solver);
+  finish(block.frames.whole(1, block.no_pause), block.scene.map);
+  const PointFrame found = PointFrames(block.scratch / "run.h5").read(0);
+  const PointFrame exact = point_frame(block.scene, block.options, 0.1, block.solver->shown());
+  ASSERT_EQ(found.id, exact.id);
+  double furthest = 0, largest = 0;
+  for (std::size_t p = 0; p < exact.id.size(); ++p)
+    for (std::size_t a = 0; a < 3; ++a) {
+      furthest = std::max(furthest, std::abs(found.position[p][a] - exact.position[p][a]));
+      largest = std::max<double>(largest, std::abs(found.velocity[p][a] / exact.velocity[p][a] - 1));
+    }
+  EXPECT_GT(furthest, 0);
+  EXPECT_LE(furthest, 0.5 / 1024);
+  EXPECT_GT(largest, 0);
+  EXPECT_LE(largest, std::exp2(-13));
+}
+
+TEST(FrameRecorder, keeps_the_frames_of_runs_apart) {
+  RecordedBlock block(FramePoints::none);
+  for (const char* run : {"a1", "b2"}) {
+    block.frames.belong_to(run);
+    block.frames.put(0, *block.solver);
+    block.frames.save(1);
+  }
+  std::filesystem::create_directory(block.scratch / "frames/c3");
+  std::filesystem::copy_file(block.scratch / "frames/b2/from_00000.h5", block.scratch / "frames/c3/from_00000.h5");
+  block.frames.belong_to("c3");
+  const std::string fault = test::fault_of<DataError>([&] { block.frames.go_on_after(1); });
+  EXPECT_NE(fault.find("from_00000.h5: frames of the run b2 (this is the run c3)"), std::string::npos) << fault;
+  block.frames.belong_to("a1");
+  block.frames.go_on_after(1);
+  block.frames.drop_others();
+  EXPECT_EQ(test::names_in(block.scratch / "frames"), std::vector<std::string>{"a1"});
 }
 
 TEST(side_work, pieces_are_done_one_after_the_other) {
@@ -316,12 +354,12 @@ TEST(side_work, pieces_are_done_one_after_the_other) {
   EXPECT_EQ(done, "abc");
 }
 
-TEST(side_work, an_error_is_thrown_where_the_next_piece_is_started) {
+TEST(side_work, an_error_ends_the_pieces_behind_and_is_thrown_where_one_is_started) {
   SideWork work;
   bool ran = false;
   work.start([] { throw std::runtime_error("disk"); });
-  EXPECT_THROW(work.start([&ran] { ran = true; }), std::runtime_error);
-  work.settle();
+  EXPECT_THROW(for (int n = 0; n < 4; ++n) work.start([&ran] { ran = true; }), std::runtime_error);
+  EXPECT_THROW(work.settle(), std::runtime_error);
   EXPECT_FALSE(ran);
 }
 
