@@ -62,7 +62,9 @@ enum class Gather {
 /// as they do where columns are not implicit.
 template <class Real, class Shape, Gather part, bool budget, bool by_layers = true, class Laws = MaterialLaws>
 struct GridToParticle {
-  static constexpr int dense = part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) : 1;  ///< see run_dense
+  /// See for_each(). Splines would spill registers where one block more shares a multiprocessor.
+  static constexpr int dense =
+      part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) - (Shape::width == 3 ? 1 : 0) : 1;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real, Laws> materials;
