@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -18,6 +22,7 @@
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "common/error.hpp"
 #include "common/stage/context.hpp"
@@ -165,6 +170,18 @@ double memory_of_machine(std::string_view name) {
     if (found.size() == name.size() + 1 && found.starts_with(name)) return kilobytes * 1024;
   }
   return unlimited;
+}
+
+double age_of_process() {
+  std::ifstream stream("/proc/self/stat");
+  const std::string all{std::istreambuf_iterator<char>(stream), {}};
+  std::istringstream behind_name(all.substr(all.rfind(')') + 1));
+  std::string word;
+  for (int field = 3; field <= 22; ++field) behind_name >> word;  // the last is starttime, in ticks of the machine
+  timespec now{};
+  ::clock_gettime(CLOCK_BOOTTIME, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+         std::strtod(word.c_str(), nullptr) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 double usable_memory() {

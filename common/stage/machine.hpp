@@ -21,6 +21,9 @@ int thread_limit();
 /// What the system says of its memory under a name of /proc/meminfo, such as "MemTotal" [bytes]; else infinity.
 double memory_of_machine(std::string_view name);
 
+/// How long ago this process was started, before its libraries were loaded [s]; to 0.01 s.
+double age_of_process();
+
 /// Memory that this process may have at most [bytes]: the least of the machine's, that of its control groups and its
 /// own limits (ulimit -v). Infinity where nothing is known.
 double usable_memory();

@@ -294,6 +294,7 @@ std::vector<fs::path> carry_out(const Stage& stage, const StageCall& call) {
   const std::string said = run_recorded(stage, opened, found);
   if (has_made_results(stage, opened)) note_results(stage, opened);
   keep_log(stage, opened, said);
+  log_detail(fmt::format("{}: {:.2f} s after the process began", stage.name, age_of_process()));
   return opened.results;
 }
 

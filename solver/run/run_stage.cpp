@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/stage/findings.hpp"
+#include "common/stage/machine.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/plan/describe_plan.hpp"
 
@@ -24,6 +25,7 @@ double rate(const Profile::Kernel& k) { return k.seconds > 0 ? k.bytes / k.secon
 /// The profile in lines of text. `copy` is the bandwidth of a copy where the run was [B/s].
 std::vector<std::string> profile_lines(const RunSummary& summary, const Profile& profile, double copy) {
   std::vector<std::string> lines;
+
   const auto line = [&](const std::string& name, double seconds) {
     lines.push_back(fmt::format("  {:28} {:9.3f} s {:5.1f} %", name, seconds,
                                 summary.wall_time > 0 ? 100 * seconds / summary.wall_time : 0));
@@ -58,8 +60,12 @@ std::vector<std::string> profile_lines(const RunSummary& summary, const Profile&
   return lines;
 }
 
-/// This function reports what was measured, in words and as profile.csv.
-void report_profile(const RunSummary& summary, const AnyDevice& device, const std::filesystem::path& out) {
+/// This function reports what was measured, in words and as profile.csv. `before`: age of the process as the run began
+/// [s].
+void report_profile(const RunSummary& summary, const AnyDevice& device, double before,
+                    const std::filesystem::path& out) {
+  log_info(fmt::format("process: {:.2f} s before the run, {:.2f} s in it, {:.2f} s for its files", before,
+                       summary.wall_time, age_of_process() - before - summary.wall_time));
   Profile& profile = device.profile();
   profile.turn_off();
   const double copy = device.is_gpu() ? copy_bandwidth(device.gpu()) : copy_bandwidth(device.cpu());
@@ -138,12 +144,13 @@ Facts run_in_time(StageContext& context, const RunFlags& flags, const std::share
   Facts facts = plan->domain->provenance;
   const Facts own = made_by(context, options);
   facts.insert(facts.end(), own.begin(), own.end());
+  const double before = age_of_process();
   const RunSummary summary =
       simulation.run(context.recipe.scene_name(), context.recipe.title(), facts, findings_so_far());
   log_info(fmt::format("{} at t = {:.2f} s after {} steps in {:.1f} s", summary.stop_reason, summary.time_end,
                        summary.steps, summary.wall_time));
   if (accepts_torn) warn_of_unused("solve", {torn_body}, summary.findings);
-  if (flags.profile) report_profile(summary, device, context.out);
+  if (flags.profile) report_profile(summary, device, before, context.out);
   context.results.push_back(paths.run);
   return facts_of(summary);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What this process may take of the machine, the files it reads and the folder it writes to.
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <set>
@@ -30,6 +31,14 @@ using test::holds;
 using test::names_in;
 using test::Scratch;
 using test::text_of;
+
+TEST(Machine, a_process_grows_as_old_as_time_passes) {
+  const double young = age_of_process();
+  EXPECT_GE(young, 0);
+  EXPECT_LT(young, 3600);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_GT(age_of_process() - young, 0.09);
+}
 
 TEST(Machine, as_many_threads_as_the_affinity_mask_has_processors) {
   cpu_set_t before;
