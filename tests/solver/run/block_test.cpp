@@ -28,7 +28,7 @@ class BlockOnIncline : public InEachPlace {
   }
 
   static SolveOptions options(const Incline& c, Integrator integrator = Integrator::explicit_) {
-    SolveOptions o = elastic_options(1e9, integrator);  // the closed form is that of a rigid block
+    SolveOptions o = elastic_options(1e8, integrator);  // the closed form is that of a rigid block
     o.base.friction_angle = c.friction;
     return o;
   }

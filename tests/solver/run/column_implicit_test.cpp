@@ -251,7 +251,7 @@ struct Slump {
     Domain d = ground(40, 24, 1.0, 0.25, [](double x, double) { return 50 - std::tan(15 * degree) * x; });
     fill(d, {6, 12, 9, 15, 0, 4}, 2, 2);
     SolveOptions o = stepping_by(integrator);
-    o.material.youngs_modulus = 2e7;
+    o.material.youngs_modulus = 5e6;
     o.mapping = mapping;
     o.stress_update = update;
     o.material.friction_angle = 30;

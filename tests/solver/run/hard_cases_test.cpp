@@ -163,7 +163,7 @@ TEST_P(HardCases, cliffs_spikes_and_pits_hold_nothing_inside_the_ground) {  // C
                  bump = x > 44 ? 3 * std::sin(1.7 * x) * std::sin(2.3 * y) : 0.0;
     return cliff + bump;
   });
-  fill(d, {24, 32, 12, 20, 0, 4});
+  fill(d, {24, 32, 12, 16, 0, 4});
   for (const auto mapping : {Mapping::terrain_following, Mapping::cartesian}) {
     for (const Way& way : ways) {
       SCOPED_TRACE(std::string(way.name) + (mapping == Mapping::cartesian ? ", cartesian" : ""));
@@ -225,7 +225,7 @@ TEST_P(HardCases, a_slab_below_its_friction_angle_rests_in_long_steps_too) {
   // first finds its way on smoothed friction and may not stay there. 1e-4 of its length in 60 s, a sixth in 10 s.
   constexpr double length = 12;
   Domain d = ground_of_20_degrees(1);
-  fill(d, {10, 10 + length, 5, 11, 0, 2});
+  fill(d, {10, 10 + length, 5, 8, 0, 2});
   for (const auto& [geostatic, cfl] : {std::pair{false, 10.0}, {true, 10.0}, {true, 200.0}}) {
     SolveOptions o = slab_on_a_bed_of_25_degrees();
     o.material.tension_cutoff = 1e4;
