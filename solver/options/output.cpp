@@ -65,8 +65,8 @@ void OutputOptions::describe(recipe::Visitor& v, const SolveOptions& all) {
   recipe::choice(
       v, "point_frames", point_frames,
       {{"rounded", FramePoints::rounded}, {"exact", FramePoints::exact}, {"none", FramePoints::none}},
-      "material points of frames in run.h5; rounded: positions to a thousandth of a cell, velocity and pressure "
-      "to 1e-4 of themselves; the file is half as large");
+      "material points of frames in run.h5; rounded: positions to 1e-4 of a cell, velocity and pressure to 1e-4; the "
+      "file is half as large");
   v.flag("energy_budget", energy_budget,
          "explicit and column-implicit steps: keep what is lost to the bed, to plastic flow, to damping and between "
          "points and grid, and "

@@ -22,12 +22,14 @@ constexpr const char* begin_anew = "Run talus-solve again without --restart";
 /// A number with 12 bits behind its first: what no map, picture or chart shows packs badly.
 float rounded(float value) { return std::bit_cast<float>((std::bit_cast<std::uint32_t>(value) + 0x400U) & ~0x7ffU); }
 
-/// Rounds the positions of a frame to a power of two below a thousandth of a cell, velocity and pressure to 12 bits.
-/// Volumes pack well as they are, and are summed.
-void round(PointFrame& frame, double cell) {
-  const double step = std::exp2(std::floor(std::log2(cell / 1024)));
-  for (auto& position : frame.position)
-    for (double& x : position) x = std::round(x / step) * step;
+/// Rounds the positions of a frame to a power of two below 1/4096 of a cell, velocity and pressure to 12 bits. Volumes
+/// pack well as they are, and are summed.
+void round(PointFrame& frame, const GridShape& grid) {
+  const double cell[] = {grid.spacing, grid.spacing, grid.layer_height};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double step = std::exp2(std::floor(std::log2(cell[a] / 4096)));
+    for (auto& position : frame.position) position[a] = std::round(position[a] / step) * step;
+  }
   for (auto& velocity : frame.velocity)
     for (float& v : velocity) v = rounded(v);
   for (float& p : frame.pressure) p = rounded(p);
@@ -64,7 +66,7 @@ void FrameRecorder::put(double time, Solver& solver) {
   writing_.start(
       [this, time, shown, thickness = solver.thickness(), state = points ? solver.shown() : ParticleState{}] {
         PointFrame frame = point_frame(scene_, options_, time, state);
-        if (shown == FramePoints::rounded) round(frame, scene_.grid.spacing);
+        if (shown == FramePoints::rounded) round(frame, scene_.grid);
         if (!frame.id.empty()) run_->append(frame);
         run_->append_thickness(time, scene_.map, thickness);
       });
