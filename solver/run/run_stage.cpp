@@ -25,7 +25,6 @@ double rate(const Profile::Kernel& k) { return k.seconds > 0 ? k.bytes / k.secon
 /// The profile in lines of text. `copy` is the bandwidth of a copy where the run was [B/s].
 std::vector<std::string> profile_lines(const RunSummary& summary, const Profile& profile, double copy) {
   std::vector<std::string> lines;
-
   const auto line = [&](const std::string& name, double seconds) {
     lines.push_back(fmt::format("  {:28} {:9.3f} s {:5.1f} %", name, seconds,
                                 summary.wall_time > 0 ? 100 * seconds / summary.wall_time : 0));

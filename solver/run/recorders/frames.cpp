@@ -61,15 +61,14 @@ PointFrame point_frame(const Scene& scene, const SolveOptions& options, double t
 
 void FrameRecorder::put(double time, Solver& solver) {
   const FramePoints shown = options_.point_frames;
-  const bool points = shown != FramePoints::none;
   if (!run_) run_ = std::make_unique<RunWriter>(file_);
-  writing_.start(
-      [this, time, shown, thickness = solver.thickness(), state = points ? solver.shown() : ParticleState{}] {
-        PointFrame frame = point_frame(scene_, options_, time, state);
-        if (shown == FramePoints::rounded) round(frame, scene_.grid);
-        if (!frame.id.empty()) run_->append(frame);
-        run_->append_thickness(time, scene_.map, thickness);
-      });
+  writing_.start([this, time, shown, thickness = solver.thickness(),
+                  state = shown == FramePoints::none ? ParticleState{} : solver.shown()] {
+    PointFrame frame = point_frame(scene_, options_, time, state);
+    if (shown == FramePoints::rounded) round(frame, scene_.grid);
+    if (!frame.id.empty()) run_->append(frame);
+    run_->append_thickness(time, scene_.map, thickness);
+  });
 }
 
 std::filesystem::path FrameRecorder::saved_file(std::int64_t first) const {
