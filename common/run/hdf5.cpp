@@ -81,8 +81,8 @@ void prepare_library() {
 File File::create(const std::filesystem::path& path, Naming naming) {
   prepare_library();
   const Id root(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  H5Pset_link_creation_order(root, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, root, H5P_DEFAULT), std::move(naming), true);
+  const bool ordered = H5Pset_link_creation_order(root, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0;
+  File file(ordered ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, root, H5P_DEFAULT) : hid_t{-1}, std::move(naming), true);
   if (file.id_ < 0) file.fail("it cannot be created");
   return file;
 }
@@ -130,8 +130,9 @@ void File::fail(const std::string& problem) const {
 
 void File::make_group(const std::string& path) {
   const Id list(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  H5Pset_attr_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  if (H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) < 0 ||
+      H5Pset_attr_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) < 0)
+    fail(fmt::format("group {}", path));
   Id group(H5Gcreate2(id_, path.c_str(), H5P_DEFAULT, list, H5P_DEFAULT), H5Gclose);
   if (group.bad() || !group.close()) fail(fmt::format("group {}", path));
 }

@@ -28,9 +28,10 @@ Dims chunk_of(const Dims& dims) {
 
 constexpr int effort = 1;  // of libdeflate: 4 takes twice as long for 2 % less
 
-herr_t set_compression(hid_t list, const Dims& chunk) {
-  if (H5Pset_chunk(list, static_cast<int>(chunk.size()), chunk.data()) < 0 || H5Pset_shuffle(list) < 0) return -1;
-  return H5Pset_deflate(list, effort);
+/// Whether `list` names the filters that packed() applies: chunks of a list that lacks one would be read wrongly.
+bool set_compression(hid_t list, const Dims& chunk) {
+  return H5Pset_chunk(list, static_cast<int>(chunk.size()), chunk.data()) >= 0 && H5Pset_shuffle(list) >= 0 &&
+         H5Pset_deflate(list, effort) >= 0;
 }
 
 std::size_t product(std::span<const hsize_t> dims) {
@@ -87,7 +88,7 @@ void File::write_raw(const std::string& path, const Dims& dims, hid_t type, cons
   const Id space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   const Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   const bool plain = plain_ || count == 0 || dims.empty();
-  if (!plain) set_compression(list, chunk_of(dims));
+  if (!plain && !set_compression(list, chunk_of(dims))) fail(path);
   Id set(H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose);
   const auto written = [&] {
     if (count == 0) return true;
@@ -105,7 +106,7 @@ File::Growing File::create_extendible(const std::string& path, hsize_t rows, con
   whole.insert(whole.end(), row.begin(), row.end());
   const Id space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), limit.data()), H5Sclose);
   const Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  set_compression(list, chunk_of(whole));
+  if (!set_compression(list, chunk_of(whole))) fail(path);
   const hid_t set = H5Dcreate2(id_, path.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT);
   if (set < 0) fail(path);
   return {.set = set, .shape = dims, .chunk = chunk_of(whole), .width = H5Tget_size(type)};
