@@ -18,4 +18,14 @@ std::string deflated(std::span<const char> bytes, int effort) {
   return packed;
 }
 
+bool inflate_to(std::span<char> to, std::span<const char> packed) {
+  const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor(
+      libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+  if (!decompressor) throw std::bad_alloc();
+  return libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), to.data(), to.size(), nullptr) ==
+         LIBDEFLATE_SUCCESS;
+}
+
+std::uint32_t crc32_of(std::span<const char> bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
+
 }  // namespace talus

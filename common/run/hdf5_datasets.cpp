@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -14,11 +16,13 @@
 namespace talus::h5 {
 namespace {
 
-/// Chunks of about 2^15 values: a good size for the cache HDF5 keeps (1 MiB) and for reading one map or one frame. A
+/// Chunks of at most 2^15 values: a good size for the cache HDF5 keeps (1 MiB) and for reading one map or one frame. A
 /// chunk is one piece of the values in memory: whole in its last dimensions, a part of one, one of each before.
+constexpr hsize_t most_values = 1 << 15;
+
 Dims chunk_of(const Dims& dims) {
   Dims chunk = dims;
-  hsize_t left = 1 << 15;
+  hsize_t left = most_values;
   for (auto i = chunk.size(); i-- > 0;) {
     chunk[i] = std::clamp<hsize_t>(chunk[i], 1, std::max<hsize_t>(left, 1));
     left /= chunk[i];
@@ -48,32 +52,139 @@ std::string packed(std::span<const char> values, std::size_t bytes, std::size_t 
   return deflated(shuffled, effort);
 }
 
-/// Writes values of the shape `block`, the first of whose rows is row `first` of the dataset, and returns whether that
-/// worked. Chunks are packed on all threads, and handed to HDF5, which would pack them on one, as they are stored.
-bool write_chunks(hid_t set, hsize_t first, const Dims& block, const Dims& chunk, std::size_t width, const char* data) {
-  constexpr std::size_t at_a_time = 64;
-  std::size_t cut = 0;  // the dimension of which a chunk has a part
+/// Takes a chunk apart: the bytes from `skip` on of what packed() was given. Returns false where it is damaged.
+bool unpacked(std::span<const char> stored, std::size_t bytes, std::size_t width, std::size_t skip,
+              std::span<char> values) {
+  std::string shuffled(bytes, '\0');
+  if (!inflate_to(shuffled, stored)) return false;
+  const std::size_t count = bytes / width, first = skip / width;
+  for (std::size_t n = 0; n < values.size() / width; ++n)
+    for (std::size_t b = 0; b < width; ++b) values[n * width + b] = shuffled[b * count + first + n];
+  return true;
+}
+
+/// The dimension of which a chunk has a part.
+std::size_t cut_of(const Dims& chunk) {
+  std::size_t cut = 0;
   while (cut + 1 < chunk.size() && chunk[cut] == 1) ++cut;
-  const std::size_t row =
-      product(std::span(block).subspan(cut + 1)) * width;  // of the values from one index to the next
-  const std::size_t parts = (block[cut] + chunk[cut] - 1) / chunk[cut];
-  const std::size_t count = product(std::span(block).first(cut)) * parts;
-  std::vector<std::string> stored(std::min(count, at_a_time));
-  for (std::size_t begin = 0; begin < count; begin += at_a_time) {
-    const std::size_t end = std::min(begin + at_a_time, count);
+  return cut;
+}
+
+/// The chunks that hold values of the shape `block`, the first of whose rows is row `first` of the dataset.
+class Pieces {
+ public:
+  /// A chunk's place in the dataset, and the values of it that are asked for: from where on, in bytes, they lie among
+  /// the values in memory and in the chunk, and how many bytes they are.
+  struct Piece {
+    Dims offset;
+    std::size_t at, skip, bytes;
+  };
+
+  Pieces(hsize_t first, const Dims& block, const Dims& chunk, std::size_t width)
+      : first_(first), block_(block), chunk_(chunk), cut_(cut_of(chunk)) {
+    row_ = product(std::span(block).subspan(cut_ + 1)) * width;
+    start_ = cut_ == 0 ? first : 0;
+    const std::size_t parts_before = start_ / chunk[cut_];
+    parts_ = (start_ + block[cut_] + chunk[cut_] - 1) / chunk[cut_] - parts_before;
+    count_ = product(std::span(block).first(cut_)) * parts_;
+    chunk_bytes_ = chunk[cut_] * row_;
+  }
+  std::size_t count() const { return count_; }
+  std::size_t chunk_bytes() const { return chunk_bytes_; }  ///< of the values of a whole one
+
+  Piece operator[](std::size_t c) const {
+    const hsize_t chunk = (start_ / chunk_[cut_] + c % parts_) * chunk_[cut_];
+    const hsize_t from = std::max(chunk, start_), to = std::min(chunk + chunk_[cut_], start_ + block_[cut_]);
+    Piece piece{Dims(block_.size(), 0), (c / parts_ * block_[cut_] + from - start_) * row_, (from - chunk) * row_,
+                (to - from) * row_};
+    std::size_t left = c / parts_;
+    for (std::size_t d = cut_; d-- > 0; left /= block_[d]) piece.offset[d] = left % block_[d];
+    if (cut_ > 0) piece.offset[0] += first_;
+    piece.offset[cut_] = chunk;
+    return piece;
+  }
+
+ private:
+  hsize_t first_;
+  const Dims &block_, &chunk_;
+  std::size_t cut_;
+  std::size_t row_;    // bytes of the values from one index of that dimension to the next
+  hsize_t start_;      // the first index of it
+  std::size_t parts_;  // chunks along it
+  std::size_t count_, chunk_bytes_;
+};
+
+constexpr std::size_t at_a_time = 64;  // chunks in memory
+
+/// Writes values of the shape `block`, the first of whose rows is row `first` of the dataset and of a chunk, and
+/// returns whether that worked. Chunks are packed on all threads, and handed to HDF5, which would pack them on one, as
+/// they are stored.
+bool write_chunks(hid_t set, hsize_t first, const Dims& block, const Dims& chunk, std::size_t width, const char* data) {
+  const Pieces pieces(first, block, chunk, width);
+  std::vector<std::string> stored(std::min(pieces.count(), at_a_time));
+  for (std::size_t begin = 0; begin < pieces.count(); begin += at_a_time) {
+    const std::size_t end = std::min(begin + at_a_time, pieces.count());
     tbb::parallel_for(begin, end, [&](std::size_t c) {
-      const std::size_t from = c % parts * chunk[cut], rows = std::min<std::size_t>(chunk[cut], block[cut] - from);
-      stored[c - begin] = packed({data + (c / parts * block[cut] + from) * row, rows * row}, chunk[cut] * row, width);
+      const Pieces::Piece piece = pieces[c];
+      stored[c - begin] = packed({data + piece.at, piece.bytes}, pieces.chunk_bytes(), width);
     });
     for (std::size_t c = begin; c < end; ++c) {
-      Dims offset(block.size(), 0);
-      offset[cut] = c % parts * chunk[cut];
-      std::size_t left = c / parts;
-      for (std::size_t d = cut; d-- > 0; left /= block[d]) offset[d] = left % block[d];
-      offset[0] += first;
       const std::string& bytes = stored[c - begin];
-      if (H5Dwrite_chunk(set, H5P_DEFAULT, 0, offset.data(), bytes.size(), bytes.data()) < 0) return false;
+      if (H5Dwrite_chunk(set, H5P_DEFAULT, 0, pieces[c].offset.data(), bytes.size(), bytes.data()) < 0) return false;
     }
+  }
+  return true;
+}
+
+/// The shape of the chunks of a dataset, where they are stored as write_chunks() stores those of a type; else none.
+std::optional<Dims> packed_chunks(hid_t set, const Dims& shape, hid_t type) {
+  const Id list(H5Dget_create_plist(set), H5Pclose), in_file(H5Dget_type(set), H5Tclose);
+  if (list.bad() || in_file.bad() || shape.empty() || H5Tequal(in_file, type) <= 0) return std::nullopt;
+  if (H5Pget_layout(list) != H5D_CHUNKED || H5Pget_nfilters(list) != 2) return std::nullopt;
+  for (const unsigned k : {0U, 1U}) {
+    unsigned flags = 0;
+    std::size_t none = 0;
+    if (H5Pget_filter2(list, k, &flags, &none, nullptr, 0, nullptr, nullptr) !=
+        (k == 0 ? H5Z_FILTER_SHUFFLE : H5Z_FILTER_DEFLATE))
+      return std::nullopt;
+  }
+  Dims chunk(shape.size());
+  if (H5Pget_chunk(list, static_cast<int>(chunk.size()), chunk.data()) != static_cast<int>(chunk.size()))
+    return std::nullopt;
+  const std::size_t whole = cut_of(chunk) + 1;
+  const bool as_written = std::ranges::equal(std::span(chunk).subspan(whole), std::span(shape).subspan(whole));
+  return as_written && product(chunk) <= most_values ? std::optional(chunk) : std::nullopt;
+}
+
+/// Reads values of the shape `block`, the first of whose rows is row `first` of the dataset. Chunks are unpacked on all
+/// threads. Returns false where they are stored otherwise, or one is damaged: HDF5 reads it, or says what is wrong.
+bool read_chunks(hid_t set, const Dims& shape, hsize_t first, const Dims& block, hid_t type, char* data) {
+  const auto chunk = packed_chunks(set, shape, type);
+  if (!chunk) return false;
+  const std::size_t width = H5Tget_size(type);
+  const Pieces pieces(first, block, *chunk, width);
+  std::vector<std::string> stored(std::min(pieces.count(), at_a_time));
+  for (std::size_t begin = 0; begin < pieces.count(); begin += at_a_time) {
+    const std::size_t end = std::min(begin + at_a_time, pieces.count());
+    for (std::size_t c = begin; c < end; ++c) {
+      const Pieces::Piece piece = pieces[c];
+      hsize_t bytes = 0;
+      std::uint32_t skipped_filters = 0;
+      if (H5Dget_chunk_storage_size(set, piece.offset.data(), &bytes) < 0 || bytes == 0 ||
+          bytes > 2 * pieces.chunk_bytes() + 1024)
+        return false;
+      stored[c - begin].resize(bytes);
+      if (H5Dread_chunk(set, H5P_DEFAULT, piece.offset.data(), &skipped_filters, stored[c - begin].data()) < 0 ||
+          skipped_filters != 0)
+        return false;
+    }
+    std::atomic<bool> whole = true;
+    tbb::parallel_for(begin, end, [&](std::size_t c) {
+      const Pieces::Piece piece = pieces[c];
+      if (!unpacked(stored[c - begin], pieces.chunk_bytes(), width, piece.skip, {data + piece.at, piece.bytes}))
+        whole = false;
+    });
+    if (!whole) return false;
   }
   return true;
 }
@@ -196,6 +307,8 @@ void File::check_stored(const std::string& path, const Dims& shape, hid_t type) 
 }
 
 void File::read_raw(const std::string& path, hid_t type, void* data) const {
+  const auto shape = dims(path);
+  if (!shape.empty()) return read_rows_raw(path, 0, shape[0], type, data);
   const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
   if (set.bad() || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
     fail(fmt::format("dataset {} cannot be read", path));
@@ -207,6 +320,7 @@ void File::read_rows_raw(const std::string& path, hsize_t first, hsize_t rows, h
   start[0] = first;
   block[0] = rows;
   const Id set(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!set.bad() && read_chunks(set, shape, first, block, type, static_cast<char*>(data))) return;
   const Id there(H5Dget_space(set), H5Sclose);
   const Id here(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
   const bool chosen = H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr, block.data(), nullptr) >= 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -44,7 +45,7 @@ std::span<const T> flat(const std::vector<T>& values) {
 template <class T, std::size_t N>
 std::vector<std::array<T, N>> rows_of(const std::vector<T>& flat) {
   std::vector<std::array<T, N>> rows(flat.size() / N);
-  for (std::size_t i = 0; i < flat.size(); ++i) rows[i / N][i % N] = flat[i];
+  if (!rows.empty()) std::memcpy(rows.data(), flat.data(), rows.size() * sizeof rows[0]);
   return rows;
 }
 

@@ -3,6 +3,8 @@
 // What the layer over HDF5 refuses: datasets of another kind or shape than asked for, and shapes without data.
 #include "common/run/hdf5.hpp"
 
+#include <numeric>
+
 #include "common/run/sealed_file.hpp"
 #include "common/stage/checksum.hpp"
 #include "tests/common/scratch.hpp"
@@ -111,6 +113,80 @@ TEST_F(Hdf5Reading, names_place_and_value_of_what_cannot_be) {
   EXPECT_EQ(fault(checked(h5::not_negative_or_none, {nan, 0, 1e29})), "");
   EXPECT_EQ(fault(checked(h5::thickness_or_none, {nan, 0, 2e5})),
             ": dataset /x holds 200000 at place 2 (0 to 100000 is possible, or NaN for none). Mend it");
+}
+
+std::vector<double> counting(std::size_t count) {
+  std::vector<double> values(count);
+  std::iota(values.begin(), values.end(), 0.25);
+  return values;
+}
+
+/// A dataset as HDF5 itself reads it.
+std::vector<double> as_hdf5_reads(const std::filesystem::path& path, const char* name, std::size_t count) {
+  const h5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const h5::Id set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  std::vector<double> values(count);
+  EXPECT_GE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+  return values;
+}
+
+// Chunks are packed and unpacked outside HDF5: maps of 60,000 cells are stored in two chunks each, rows of a growing
+// dataset in one for every 1,024.
+TEST(Hdf5Chunks, hold_the_same_for_hdf5_and_for_any_rows_that_are_asked_for) {
+  const test::Scratch scratch;
+  const auto path = scratch / "file.h5";
+  const auto maps = counting(std::size_t{4} * 300 * 200), rows = counting(std::size_t{7070} * 3);
+  {
+    h5::File out = h5::File::create(path, {path, ""});
+    out.write<double>("/maps", {4, 300, 200}, maps);
+    const std::span<const double> all(rows);
+    out.append<double>("/rows", 10, {3}, all.first(30));
+    out.append<double>("/rows", 5000, {3}, all.subspan(30, 15000));
+    out.append<double>("/rows", 2060, {3}, all.subspan(15030));
+    out.close();
+  }
+  EXPECT_EQ(as_hdf5_reads(path, "/maps", maps.size()), maps);
+  EXPECT_EQ(as_hdf5_reads(path, "/rows", rows.size()), rows);
+  const h5::File file = h5::File::open(path, {path, ""});
+  EXPECT_EQ(file.read<double>("/maps", {4, 300, 200}), maps);
+  const auto part = [](const std::vector<double>& of, std::size_t row, std::size_t first, std::size_t count) {
+    const auto begin = of.begin() + static_cast<std::ptrdiff_t>(row * first);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(row * count));
+  };
+  EXPECT_EQ(file.read_rows<double>("/maps", 1, 2, {300, 200}), part(maps, 60000, 1, 2));
+  for (const auto& [first, count] : std::vector<std::pair<std::size_t, std::size_t>>{
+           {0, 7070}, {0, 1}, {1023, 2}, {1024, 1024}, {5, 3000}, {7069, 1}, {7070, 0}})
+    EXPECT_EQ(file.read_rows<double>("/rows", first, count, {3}), part(rows, 3, first, count)) << first;
+}
+
+TEST(Hdf5Chunks, of_other_filters_are_read_and_damaged_ones_refused) {
+  const test::Scratch scratch;
+  const auto path = scratch / "file.h5";
+  const auto values = counting(5000);
+  const hsize_t dims = values.size(), chunk = 1000;
+  haddr_t place = 0;
+  hsize_t bytes = 0;
+  for (const bool shuffled : {false, true}) {
+    const h5::Id file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const h5::Id space(H5Screate_simple(1, &dims, nullptr), H5Sclose), list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_chunk(list, 1, &chunk);
+    if (shuffled) H5Pset_shuffle(list);
+    H5Pset_deflate(list, 9);
+    const h5::Id set(H5Dcreate2(file, "/x", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose);
+    ASSERT_GE(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+    H5Fflush(file, H5F_SCOPE_LOCAL);
+    EXPECT_EQ(h5::File::open(path, {path, ""}).read_list<double>("/x"), values) << shuffled;
+    unsigned filters = 0;
+    const hsize_t third = 2000;
+    ASSERT_GE(H5Dget_chunk_info_by_coord(set, &third, &filters, &place, &bytes), 0);
+  }
+  std::string text = test::text_of(path);
+  text[place + bytes / 2] = static_cast<char>(~text[place + bytes / 2]);
+  scratch.write("file.h5", text);
+  const h5::File file = h5::File::open(path, {path, "Mend it"});
+  EXPECT_EQ(file.read_rows<double>("/x", 0, 2000, {}).back(), values[1999]);
+  EXPECT_NE(test::fault_of<DataError>([&] { file.read_list<double>("/x"); }).find("dataset /x cannot be read"),
+            std::string::npos);
 }
 
 constexpr h5::Format known_format{"talus-test", "a test"};
