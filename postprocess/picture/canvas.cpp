@@ -8,6 +8,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "common/deflate.hpp"
+
 namespace talus::postprocess {
 namespace {
 
@@ -41,6 +43,19 @@ void set_font(cairo_t* cairo, const TextStyle& style) {
 void require_drawn(cairo_status_t status) {
   if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
   if (status != CAIRO_STATUS_SUCCESS) throw std::runtime_error(std::string("Cairo: ") + cairo_status_to_string(status));
+}
+
+constexpr int effort = 6;  // of libdeflate, for PNG
+
+/// A number as PNG writes it, in four bytes.
+std::string big_endian(std::size_t number) {
+  return {static_cast<char>(number >> 24), static_cast<char>(number >> 16), static_cast<char>(number >> 8),
+          static_cast<char>(number)};
+}
+
+/// Adds a chunk of PNG: its length without the four letters of its kind, both, and their checksum.
+void put_chunk(std::string& bytes, const std::string& kind_and_data) {
+  bytes += big_endian(kind_and_data.size() - 4) + kind_and_data + big_endian(crc32_of(kind_and_data));
 }
 
 }  // namespace
@@ -154,14 +169,22 @@ std::string Canvas::pixels() const {
 int Canvas::width() const { return cairo_image_surface_get_width(handles_->surface); }
 int Canvas::height() const { return cairo_image_surface_get_height(handles_->surface); }
 
-std::string Canvas::png() {
-  std::string bytes;
-  const auto write = [](void* closure, const unsigned char* data, unsigned length) {
-    static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
-    return CAIRO_STATUS_SUCCESS;
-  };
-  require_drawn(cairo_status(handles_->cairo));
-  require_drawn(cairo_surface_write_to_png_stream(handles_->surface, write, &bytes));
+/// PNG (ISO/IEC 15948:2004), 8 bits for red, green and blue each. Cairo's own writer takes three times as long.
+std::string Canvas::png() const {
+  const std::string from = pixels();
+  const auto columns = static_cast<std::size_t>(width()), rows = static_cast<std::size_t>(height());
+  std::string plain;
+  plain.reserve(rows * (1 + 3 * columns));
+  for (std::size_t row = 0; row < rows; ++row) {
+    plain += '\0';  // no filter
+    for (std::size_t pixel = row * columns; pixel < (row + 1) * columns; ++pixel)
+      plain.append({from[4 * pixel + 2], from[4 * pixel + 1], from[4 * pixel]});
+  }
+  std::string bytes = "\x89PNG\r\n\x1a\n";
+  constexpr char colours[] = {8, 2, 0, 0, 0};
+  put_chunk(bytes, "IHDR" + big_endian(columns) + big_endian(rows) + std::string(colours, sizeof colours));
+  put_chunk(bytes, "IDAT" + deflated(plain, effort));
+  put_chunk(bytes, "IEND");
   return bytes;
 }
 

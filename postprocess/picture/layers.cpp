@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "postprocess/picture/picture.hpp"
 
@@ -245,23 +246,21 @@ void draw_ground(Canvas& canvas, const View& view, const RunMaps& maps, const st
   std::vector<Colour> colours;
   for (std::size_t i = 0; i < limits.size(); ++i) colours.push_back(class_colour(i, limits.size()));
   const int width = static_cast<int>(view.box.width), height = static_cast<int>(view.box.height);
-  std::vector<std::uint32_t> pixels;
-  pixels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int row = 0; row < height; ++row) {
+  std::vector<std::uint32_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  tbb::parallel_for(0, height, [&](int row) {
+    std::uint32_t* pixel = pixels.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
     const double y = view.window.north - (row + 0.5) / view.scale();
     for (int column = 0; column < width; ++column) {
       const double x = view.window.west + (column + 0.5) / view.scale();
       const double shade = sample(maps.grid, shades, x, y, nan);
       const int place = class_of(sample(maps.grid, maps.deposit_thickness, x, y, 0), limits);
       const double bright = std::isnan(shade) ? 0.5 : shade;
-      if (place >= 0)
-        pixels.push_back(pixel_of(scaled(colours[static_cast<std::size_t>(place)], 0.87 + 0.18 * bright)));
-      else if (std::isnan(shade))
-        pixels.push_back(pixel_of(beyond_domain));
-      else
-        pixels.push_back(pixel_of(scaled({0.985, 0.99, 1.0}, 0.64 + 0.34 * bright)));
+      const Colour colour = place >= 0          ? scaled(colours[static_cast<std::size_t>(place)], 0.87 + 0.18 * bright)
+                            : std::isnan(shade) ? beyond_domain
+                                                : scaled({0.985, 0.99, 1.0}, 0.64 + 0.34 * bright);
+      *pixel++ = pixel_of(colour);
     }
-  }
+  });
   canvas.image(static_cast<int>(view.box.x), static_cast<int>(view.box.y), width, height, pixels);
 }
 

@@ -72,7 +72,7 @@ class Canvas {
   void clip(const Box& box);
   void unclip();
   /// The picture as a PNG file's bytes. Throws where something could not be drawn, as pixels() does.
-  std::string png();
+  std::string png() const;
   /// The picture as bytes: blue, green, red and one that is not used, row by row from the top.
   std::string pixels() const;
   int width() const;   ///< [px]

@@ -246,6 +246,39 @@ TEST(Picture, draws_a_bare_polygon_and_shortens_a_long_name) {
   EXPECT_GT(blue_pixels(run, survey), 2000);
 }
 
+// Read by Cairo, which knows nothing of the writer.
+TEST(Canvas, a_png_shows_what_was_drawn) {
+  Canvas canvas(37, 21);
+  canvas.fill(Box{0, 0, 37, 21}, {1, 1, 1});
+  canvas.fill(Box{3, 2, 9, 7}, {0.2, 0.5, 0.9});
+  canvas.text("Talus", 10, 15, {});
+  struct Rest {
+    std::string bytes;
+    std::size_t read = 0;
+  } rest{canvas.png()};
+  auto* surface = cairo_image_surface_create_from_png_stream(
+      [](void* from, unsigned char* to, unsigned length) {
+        auto& png = *static_cast<Rest*>(from);
+        if (png.read + length > png.bytes.size()) return CAIRO_STATUS_READ_ERROR;
+        png.bytes.copy(reinterpret_cast<char*>(to), length, png.read);
+        png.read += length;
+        return CAIRO_STATUS_SUCCESS;
+      },
+      &rest);
+  ASSERT_EQ(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
+  EXPECT_EQ(rest.read, rest.bytes.size());
+  ASSERT_EQ(cairo_image_surface_get_width(surface), 37);
+  ASSERT_EQ(cairo_image_surface_get_height(surface), 21);
+  const unsigned char* data = cairo_image_surface_get_data(surface);
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface));
+  const std::string drawn = canvas.pixels();
+  for (std::size_t n = 0; n < drawn.size(); ++n) {
+    if (n % 4 == 3) continue;  // unused
+    ASSERT_EQ(data[n / (4 * 37) * stride + n % (4 * 37)], static_cast<unsigned char>(drawn[n])) << n;
+  }
+  cairo_surface_destroy(surface);
+}
+
 // Cairo draws nothing more after a fault; a font that no memory was left for once emptied a map in silence.
 TEST(Canvas, what_could_not_be_drawn_is_no_picture) {
   Canvas canvas(20, 20);
