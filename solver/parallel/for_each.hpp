@@ -90,6 +90,19 @@ void gpu_launch(const GpuDevice& device, const char* where, int blocks, int thre
 #endif
 
 namespace detail {
+/// Calls kernel(i) for i in [begin, end).
+template <class Kernel>
+void run_range(Kernel kernel, int begin, int end) {
+  for (int i = begin; i < end; ++i) kernel(i);
+}
+
+/// The same with all that it calls inlined, as on a GPU, for a kernel that says it is `hot`: most are as fast without,
+/// and compile faster.
+template <class Kernel>
+requires Kernel::hot __attribute__((flatten)) void run_range(Kernel kernel, int begin, int end) {
+  for (int i = begin; i < end; ++i) kernel(i);
+}
+
 /// Calls body(kernel, begin, end) for ranges of at least `grain` indices that cover [0, count), in parallel.
 void cpu_parallel(int count, int grain, void (*body)(const void* kernel, int begin, int end), const void* kernel);
 }  // namespace detail
@@ -100,10 +113,7 @@ void for_each(const CpuDevice& device, int count, const Kernel& kernel) {
   const KernelTime<CpuDevice> time(device, kernel, count);
   detail::cpu_parallel(
       count, 256,
-      [](const void* k, int begin, int end) TALUS_FLATTEN {
-        const Kernel local = *static_cast<const Kernel*>(k);
-        for (int i = begin; i < end; ++i) local(i);
-      },
+      [](const void* k, int begin, int end) { detail::run_range(*static_cast<const Kernel*>(k), begin, end); },
       &kernel);
 }
 
@@ -145,12 +155,10 @@ void for_each_grouped(const CpuDevice& device, int count, const PointGroups& gro
     } body{&kernel, ranges.data()};
     detail::cpu_parallel(
         static_cast<int>(ranges.size()), 1,
-        [](const void* b, int begin, int end) TALUS_FLATTEN {
+        [](const void* b, int begin, int end) {
           const Body* data = static_cast<const Body*>(b);
-          const Kernel local = *data->kernel;
-          for (int r = begin; r < end; ++r) {
-            for (int p = data->ranges[r].first; p < data->ranges[r].second; ++p) local(p);
-          }
+          for (int r = begin; r < end; ++r)
+            detail::run_range(*data->kernel, data->ranges[r].first, data->ranges[r].second);
         },
         &body);
   }

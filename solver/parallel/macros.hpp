@@ -3,15 +3,19 @@
 // Marks functions that run on both devices.
 #pragma once
 
-#if defined(__CUDACC__)
+#if defined(__CUDA_ARCH__)
 #define TALUS_HD __host__ __device__ __forceinline__
-#define TALUS_RARE __host__ __device__ __noinline__  // long and seldom run: out of the way of what is run always
-#define TALUS_FLATTEN
-#define TALUS_FOR_GPU 1  // this file is compiled for the GPU as well: instantiate templates for GpuDevice
+#elif defined(__CUDACC__)
+#define TALUS_HD __host__ __device__ inline
 #else
 #define TALUS_HD inline
+#endif
+
+#if defined(__CUDACC__)
+#define TALUS_RARE __host__ __device__ __noinline__  // long and seldom run: out of the way of what is run always
+#define TALUS_FOR_GPU 1  // this file is compiled for the GPU as well: instantiate templates for GpuDevice
+#else
 #define TALUS_RARE __attribute__((noinline))
-#define TALUS_FLATTEN __attribute__((flatten))  // a loop over a kernel: what it calls is inlined, as on a GPU
 #define TALUS_FOR_GPU 0
 #endif
 

@@ -65,6 +65,7 @@ struct GridToParticle {
   /// See for_each(). Splines would spill registers where one block more shares a multiprocessor.
   static constexpr int dense =
       part == Gather::all && !budget ? (sizeof(Real) == 8 ? 4 : 6) - (Shape::width == 3 ? 1 : 0) : 1;
+  static constexpr bool hot = part == Gather::all && !budget;  ///< see run_range()
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real, Laws> materials;

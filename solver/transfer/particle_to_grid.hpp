@@ -25,6 +25,7 @@ inline constexpr bool forces_apart(Scatter what) { return what == Scatter::force
 template <class Real, class Shape, Scatter what, class Laws = MaterialLaws>
 struct ParticleToGrid {
   using Number = Real;
+  static constexpr bool hot = true;  ///< see run_range()
   static constexpr int width = Shape::width, columns_each = width * width, deep = width,
                        parts = what == Scatter::springs ? 8
                                : what == Scatter::force ? 7
