@@ -25,12 +25,12 @@ class SideWork {
     constexpr std::size_t most = 3;
     while (pieces_.size() >= most) wait_for_first();
     const auto before = pieces_.empty() ? std::shared_future<void>() : pieces_.back();
-    const auto piece = [before, work = std::move(work), &here = context()] {
+    auto piece = [before, work = std::move(work), &here = context()] {
       if (before.valid()) before.get();
       const BindContext bind(here);
       work();
     };
-    pieces_.push_back(std::async(std::launch::async, piece).share());
+    pieces_.push_back(std::async(std::launch::async, std::move(piece)).share());
   }
   /// The method waits until nothing is left to do; it throws what a piece threw.
   void settle() {
