@@ -3,7 +3,6 @@
 #include "postprocess/three_d/three_d.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -272,10 +271,8 @@ void check_three_d(const ThreeDParts& options, const Run& run, const PointFrames
 
 Files write_three_d(const fs::path& folder, const ThreeDParts& options, const Run& run, const PointFrames& points) {
   if (!options.any()) return {};
-  const auto begun = std::chrono::steady_clock::now();
   auto results = ThreeDFiles{folder, options, run, points}.write();
-  log_detail(fmt::format("{}: {:.1f} MB in {:.1f} s", folder.string(), megabytes_under(folder),
-                         std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count()));
+  log_detail(fmt::format("{}: {:.1f} MB", folder.string(), megabytes_under(folder)));
   return results;
 }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All outputs of a run, and what goes over them.
 #include <algorithm>
+#include <chrono>
 #include <ranges>
 #include <system_error>
 
+#include <fmt/format.h>
 #include <fnmatch.h>
 
 #include "common/stage/inside.hpp"
@@ -103,7 +105,10 @@ Files write_outputs(const Job& job) {
   const auto write_one = [&](std::size_t i) {
     if (!all[i].wanted(job)) return;
     stop_if_interrupted("writing " + all[i].name);
+    const auto begun = std::chrono::steady_clock::now();
     written[i] = all[i].write(job);
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begun;
+    log_detail(fmt::format("{}: {:.2f} s", all[i].name, since.count()));
   };
   const std::size_t last = all.size() - 1;
   in_threads(2, "writing results", [&](std::size_t lane) {
