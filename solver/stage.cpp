@@ -22,6 +22,7 @@
 #include "common/run/run_file.hpp"
 #include "common/stage/identity.hpp"
 #include "common/stage/machine.hpp"
+#include "common/stage/signals.hpp"
 #include "solver/ensemble/ensemble_stage.hpp"
 #include "solver/options/solve.hpp"
 #include "solver/plan/named_places.hpp"
@@ -140,8 +141,10 @@ Facts run_members_of(StageContext& context, const SolveFlags& flags, const std::
 /// returns the facts for the used recipe; of a run, `options` then name the stiffness that was settled for its scene.
 Facts solved(StageContext& context, const SolveFlags& flags, SolveOptions& options) {
   // The context of a GPU takes longer than all that is read and planned.
-  std::future<AnyDevice> making =
-      std::async(std::launch::async, [&flags] { return make_device(choose_device(flags.on)); });
+  std::future<AnyDevice> making = std::async(std::launch::async, [&flags] {
+    const CrashStack room;
+    return make_device(choose_device(flags.on));
+  });
   const auto domain_file = inputs_of(options, context.out).front();
   const auto domain = std::make_shared<const Domain>(read_domain(domain_file));
   judge_inputs(context, options, domain_file, *domain);

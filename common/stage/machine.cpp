@@ -26,6 +26,7 @@
 
 #include "common/error.hpp"
 #include "common/stage/context.hpp"
+#include "common/stage/signals.hpp"
 #include "common/stage/stage.hpp"
 
 namespace talus {
@@ -205,6 +206,7 @@ void in_threads(std::size_t count, const std::string& doing, const std::function
     try {
       while (others.size() + 1 < wanted)
         others.emplace_back([&, &here = context()] {
+          const CrashStack room;
           const BindContext bind(here);
           shared.take_all();
         });

@@ -10,6 +10,7 @@
 #include <exception>
 #include <initializer_list>
 #include <mutex>
+#include <new>
 #include <set>
 #include <utility>
 
@@ -207,12 +208,30 @@ void spare(const std::filesystem::path& path) {
     if (slot.state.load() == Slot::filled && name == slot.path.data()) slot.state.store(Slot::unused);
 }
 
+namespace {
+
+constexpr std::size_t handler_room = std::size_t{1} << 16;  // recursion without end leaves no room on the other stack
+
+void give_to_handlers(char* room) {
+  const stack_t stack{.ss_sp = room, .ss_flags = room == nullptr ? SS_DISABLE : 0, .ss_size = handler_room};
+  ::sigaltstack(&stack, nullptr);
+}
+
+}  // namespace
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+CrashStack::CrashStack() : room_(new (std::nothrow) char[handler_room]) { give_to_handlers(room_.get()); }
+CrashStack::~CrashStack() { give_to_handlers(nullptr); }
+#else
+CrashStack::CrashStack() = default;
+CrashStack::~CrashStack() = default;
+#endif
+
 void report_crashes(const std::string& program) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers report crashes themselves
   program.copy(crashing_program.data(), crashing_program.size() - 1);
-  static std::array<char, std::size_t{1} << 16> handler_stack;  // recursion without end leaves no room on the other
-  const stack_t stack{.ss_sp = handler_stack.data(), .ss_flags = 0, .ss_size = handler_stack.size()};
-  ::sigaltstack(&stack, nullptr);
+  static std::array<char, handler_room> handler_stack;
+  give_to_handlers(handler_stack.data());
   struct sigaction action {};
   action.sa_handler = talus_on_crash;
   action.sa_flags = SA_ONSTACK | static_cast<int>(SA_RESETHAND);

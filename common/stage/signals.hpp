@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace talus {
@@ -45,6 +46,19 @@ void spare(const std::filesystem::path& path);
 /// Installs handlers of SIGSEGV, SIGBUS, SIGABRT and SIGFPE. During a WhileReading they print `program`, the file and
 /// its remedy, and end the process with exit code 3; otherwise the signal has its default action.
 void report_crashes(const std::string& program);
+
+/// Room of its own for those handlers in a thread that is not the first: while one lives, they report its crashes where
+/// its stack is full too.
+class CrashStack {
+ public:
+  CrashStack();
+  CrashStack(const CrashStack&) = delete;
+  CrashStack& operator=(const CrashStack&) = delete;
+  ~CrashStack();
+
+ private:
+  std::unique_ptr<char[]> room_;
+};
 
 /// Marks a file as being read by this thread, until the end of the scope. Worker threads of a library count as well.
 class WhileReading {

@@ -12,6 +12,7 @@
 
 #include "common/run/run_file.hpp"
 #include "common/stage/context.hpp"
+#include "common/stage/signals.hpp"
 #include "solver/integrator/solver.hpp"
 #include "solver/options/solve.hpp"
 
@@ -27,6 +28,7 @@ class SideWork {
     const auto before = pieces_.empty() ? std::shared_future<void>() : pieces_.back();
     auto piece = [before, work = std::move(work), &here = context()] {
       if (before.valid()) before.get();
+      const CrashStack room;
       const BindContext bind(here);
       work();
     };

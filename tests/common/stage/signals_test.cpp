@@ -185,20 +185,36 @@ TEST(CrashReportDeathTest, worker_threads_of_a_library_count_as_well) {
       ends_as_data_error, "crashed while reading /a/wall.vdb .signal 8.");
 }
 
+/// Fills the stack.
+int recurse(volatile char* above) {
+  volatile char room[4096];
+  room[0] = above[0];
+  return room[0] == 0 ? recurse(room) + 1 : 0;  // a compiler that sees no end would refuse it
+}
+void fill_stack() {
+  volatile char first = 0;
+  recurse(&first);
+}
+
 TEST(CrashReportDeathTest, has_room_where_the_stack_has_none) {
   EXPECT_EXIT(
       {
         report_crashes("talus-test");
         const WhileReading reading("/a/wall.vdb", "Write it again");
-        const struct Recursion {
-          int into(volatile char* above) const {
-            volatile char room[4096];
-            room[0] = above[0];
-            return room[0] == 0 ? into(room) + 1 : 0;  // a compiler that sees no end would refuse it
-          }
-        } without_end;
-        volatile char first = 0;
-        without_end.into(&first);
+        fill_stack();
+      },
+      ends_as_data_error, "crashed while reading /a/wall.vdb .signal 11.");
+}
+
+TEST(CrashReportDeathTest, has_room_where_that_of_another_thread_has_none) {
+  EXPECT_EXIT(
+      {
+        report_crashes("talus-test");
+        const WhileReading reading("/a/wall.vdb", "Write it again");
+        std::thread([] {
+          const CrashStack room;
+          fill_stack();
+        }).join();
       },
       ends_as_data_error, "crashed while reading /a/wall.vdb .signal 11.");
 }
