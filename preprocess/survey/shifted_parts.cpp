@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -74,6 +75,7 @@ std::pair<double, std::size_t> densest(const std::vector<double>& sorted, double
 /// the difference goes on rising or falling on one side of the step.
 struct Side {
   double column, row, step;
+  double along = 0;  ///< its place on a line [cells]
 };
 
 /// The edge of a region, and how many sides have nothing beyond.
@@ -117,8 +119,10 @@ class EdgeReader {
     };
     const double inside = std::isnan(height(-1, true)) ? height(0, true) : height(-1, true);
     const double step = inside - height(3, false), slack = of_step * std::abs(step) + 2 * noise_;
-    const bool slopes = std::abs(height(-6, true) - inside) > slack ||  // false for NaN
-                        std::abs(height(6, false) - height(3, false)) > slack;
+    const auto differ = [&](double a, double b) { return std::abs(a - b) > slack; };       // false for NaN
+    const bool slopes = (std::isnan(height(-2, true)) && std::isnan(height(-3, true))) ||  // too narrow to tell
+                        differ(height(-4, true), inside) || differ(height(-6, true), inside) ||
+                        differ(height(6, false), height(3, false));
     return slopes ? nan : step;
   }
 
@@ -128,14 +132,14 @@ class EdgeReader {
   std::vector<char> own_;
 };
 
-/// Sides near one straight line, and how many such a line has from rim to rim of the map.
+/// Sides near one straight line, and its length from rim to rim of the map [cells].
 struct Line {
   std::vector<Side> sides;  ///< in their order along it
-  double whole = 0;
+  double length = 0;
 };
 
-/// Sides of cells that a line x cosine + y sine = offset crosses on a map.
-double sides_across(const MapGrid& grid, double cosine, double sine, double offset) {
+/// The length of a line x cosine + y sine = offset on a map [cells], at least 1.
+double length_across(const MapGrid& grid, double cosine, double sine, double offset) {
   double from = -INFINITY, to = INFINITY;  // along the line from its point nearest to the first cell
   const auto clip = [&](double start, double direction, double length) {
     if (std::abs(direction) < 1e-9) return;
@@ -145,7 +149,7 @@ double sides_across(const MapGrid& grid, double cosine, double sine, double offs
   };
   clip(offset * cosine, -sine, grid.columns);
   clip(offset * sine, cosine, grid.rows);
-  return std::max(1.0, (to - from) * (std::abs(sine) + std::abs(cosine)));
+  return std::max(1.0, to - from);
 }
 
 /// Takes out the sides within one cell of the straight line that most of them are near.
@@ -167,15 +171,16 @@ Line take_line(const MapGrid& grid, std::vector<Side>& sides) {
   const auto beside = std::stable_partition(sides.begin(), sides.end(), [&](const Side& side) {
     return std::abs(side.column * cosine + side.row * sine - offset) > 1;
   });
-  Line line{{beside, sides.end()}, sides_across(grid, cosine, sine, offset)};
-  std::ranges::sort(line.sides, {}, [&](const Side& side) { return side.row * cosine - side.column * sine; });
+  Line line{{beside, sides.end()}, length_across(grid, cosine, sine, offset)};
+  for (Side& side : line.sides) side.along = side.row * cosine - side.column * sine;
+  std::ranges::sort(line.sides, {}, &Side::along);
   sides.erase(beside, sides.end());
   return line;
 }
 
-/// The steps along a line that lie on a trend, which runs through the medians of both halves; where it would more than
+/// The sides of a line with steps on a trend, which runs through the medians of both halves; where it would more than
 /// triple the step from end to end, on their median.
-std::vector<double> even_steps(const Line& line, double noise) {
+std::vector<Side> even_sides(const Line& line, double noise) {
   std::vector<double> steps;
   for (const Side& side : line.sides)
     if (!std::isnan(side.step)) steps.push_back(side.step);
@@ -183,10 +188,22 @@ std::vector<double> even_steps(const Line& line, double noise) {
   const double usual = median(steps), rise = 2 * (median({middle, steps.end()}) - median({steps.begin(), middle})),
                trend = std::abs(rise) <= std::abs(usual) ? rise : 0,
                slack = std::max(of_step * std::abs(usual), 2 * noise), count = static_cast<double>(steps.size());
-  std::vector<double> even;
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    if (std::abs(steps[k] - usual - trend * (static_cast<double>(k) / count - 0.5)) <= slack) even.push_back(steps[k]);
+  std::vector<Side> even;
+  double k = 0;  // the number of the step
+  for (const Side& side : line.sides) {
+    if (std::isnan(side.step)) continue;
+    if (std::abs(side.step - usual - trend * (k / count - 0.5)) <= slack) even.push_back(side);
+    ++k;
+  }
   return even;
+}
+
+/// The length of a line that sides lie on [cells]: a jagged edge has several at one place. In their order along it.
+double length_of(const std::vector<Side>& sides) {
+  double length = 0, last = -INFINITY;
+  for (const Side& side : sides)
+    if (std::floor(side.along) > std::exchange(last, std::floor(side.along))) ++length;
+  return length;
 }
 
 /// The straight lines of an edge along which the step is the same.
@@ -205,9 +222,9 @@ EvenLines even_lines(const MapGrid& grid, std::vector<Side> sides, double noise)
   while (sides.size() >= least) {
     const Line line = take_line(grid, sides);
     if (line.sides.size() < least) break;
-    const std::vector<double> steps = even_steps(line, noise);
-    lines.of_map = std::max(lines.of_map, static_cast<double>(steps.size()) / line.whole);
-    all.insert(all.end(), steps.begin(), steps.end());
+    const std::vector<Side> even = even_sides(line, noise);
+    lines.of_map = std::max(lines.of_map, length_of(even) / line.length);
+    for (const Side& side : even) all.push_back(side.step);
   }
   for (const double step : all) sizes.push_back(std::abs(step));
   lines.step = median(all);

@@ -25,8 +25,9 @@ struct ShiftedPart {
 /// - has half of its edge on even lines, or one that takes half of its way from rim to rim of the map: a straight line
 ///   with 20 sides of cells of the edge and 15 % of all within one cell, those sides of it counted at which the step,
 ///   from one cell inside to three outside, keeps to the line's median, or to a trend that does not triple it, by a
-///   quarter, and at which the difference is as level from there to six cells on both sides. A circle has no such line,
-///   an ellipse three times as long as wide has two of 40 %; scars and deposits go on sloping;
+///   quarter, and at which the difference is as level four and six cells inside, which is three cells deep at least,
+///   and six outside. A circle has no such line, an ellipse three times as long as wide has two of 40 %; scars and
+///   deposits go on sloping;
 /// - has a median step there of 6 s at least;
 /// - is cut by the rim, or leaves what rose and what fell elsewhere nearer to balance than they are with it;
 /// - is not level in both surveys (is_level()), as a lake is whose water fell.
