@@ -118,12 +118,13 @@ bool is_ignored(int number) {
 
 std::array<char, 128> crashing_program{};
 thread_local constinit const WhileReading* read_here = nullptr;
-std::atomic<const WhileReading*> read_anywhere{nullptr};  // for worker threads: the file begun last
+std::atomic<const WhileReading*> read_anywhere{nullptr};  // for worker threads of libraries: the file begun last
+thread_local constinit bool is_ours = false;              // a thread that says itself what it reads
 
 static_assert(std::atomic<const WhileReading*>::is_always_lock_free);
 
 extern "C" void talus_on_crash(int signal) {
-  const WhileReading* reading = read_here != nullptr ? read_here : read_anywhere.load();
+  const WhileReading* reading = read_here != nullptr || is_ours ? read_here : read_anywhere.load();
   if (reading == nullptr) {
     remove_doomed();
     say({crashing_program.data(), signal == SIGSEGV ? ": crashed. Where 'ulimit -s' is small, raise it; else this is a "
@@ -220,7 +221,10 @@ void give_to_handlers(char* room) {
 }  // namespace
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-CrashStack::CrashStack() : room_(new (std::nothrow) char[handler_room]) { give_to_handlers(room_.get()); }
+CrashStack::CrashStack() : room_(new (std::nothrow) char[handler_room]) {
+  give_to_handlers(room_.get());
+  is_ours = true;
+}
 CrashStack::~CrashStack() { give_to_handlers(nullptr); }
 #else
 CrashStack::CrashStack() = default;

@@ -47,8 +47,8 @@ void spare(const std::filesystem::path& path);
 /// its remedy, and end the process with exit code 3; otherwise the signal has its default action.
 void report_crashes(const std::string& program);
 
-/// Room of its own for those handlers in a thread that is not the first: while one lives, they report its crashes where
-/// its stack is full too.
+/// Room of its own for those handlers in a thread that Talus starts: while one lives, they report its crashes where its
+/// stack is full too, and name no file that another thread reads.
 class CrashStack {
  public:
   CrashStack();

@@ -259,8 +259,9 @@ class Search {
     std::vector<double> rest = sorted_, levels{level_};
     for (int k = 1; k < most_levels; ++k) {
       std::erase_if(rest, [&](double v) { return std::abs(v - levels.back()) <= beyond; });
-      const auto [next, count] = densest(rest, beyond);
-      if (count < least_) break;
+      const auto densest_now = densest(rest, beyond);
+      const double next = densest_now.first;
+      if (densest_now.second < least_) break;
       levels.push_back(next);
       look([&](double v) { return std::abs(v - next) <= beyond && std::abs(v - level_) > beyond; });
     }

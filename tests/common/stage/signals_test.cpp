@@ -210,13 +210,13 @@ TEST(CrashReportDeathTest, has_room_where_that_of_another_thread_has_none) {
   EXPECT_EXIT(
       {
         report_crashes("talus-test");
-        const WhileReading reading("/a/wall.vdb", "Write it again");
+        const WhileReading reading("/a/wall.vdb", "Write it again");  // another thread does
         std::thread([] {
           const CrashStack room;
           fill_stack();
         }).join();
       },
-      ends_as_data_error, "crashed while reading /a/wall.vdb .signal 11.");
+      testing::KilledBySignal(SIGSEGV), "talus-test: crashed. Where 'ulimit -s' is small, raise it");
 }
 
 TEST(CrashReportDeathTest, other_crashes_end_as_they_do_without_it) {
