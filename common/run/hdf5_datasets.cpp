@@ -16,10 +16,10 @@
 namespace talus::h5 {
 namespace {
 
+constexpr hsize_t most_values = 1 << 15;  // of a chunk
+
 /// Chunks of at most 2^15 values: a good size for the cache HDF5 keeps (1 MiB) and for reading one map or one frame. A
 /// chunk is one piece of the values in memory: whole in its last dimensions, a part of one, one of each before.
-constexpr hsize_t most_values = 1 << 15;
-
 Dims chunk_of(const Dims& dims) {
   Dims chunk = dims;
   hsize_t left = most_values;
