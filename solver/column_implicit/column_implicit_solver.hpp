@@ -25,14 +25,10 @@ class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape, false
   }
 
  private:
-  void resize_nodes(std::size_t count) override {
-    forces_.resize(count);
-    mobilities_.resize(count);
-  }
+  void resize_nodes(std::size_t count) override { mobilities_.resize(count); }
   std::size_t node_bytes() const override { return Base::node_bytes() + mobilities_.bytes(); }
 
-  void move_nodes() override {
-    this->template scatter<Scatter::springs>();
+  void update_nodes() override {
     const SolvedColumns<Real> solved{.grid = grid_.view(),
                                      .active = grid_.active_list(),
                                      .clock = clock_.data(),

@@ -112,30 +112,18 @@ class ExplicitSolver final : public BatchSolver<Real, Device, Shape, true> {
   }
 
  private:
-  /// Whether momentum and internal forces are scattered apart.
-  bool forces_apart() const {
-    return settings_.remaps_velocity() || settings_.decay_time > 0 || settings_.damping > 0 ||
-           settings_.energy_budget || settings_.submersion.on();
-  }
-
-  void resize_nodes(std::size_t count) override {
-    if (forces_apart()) forces_.resize(count);
-  }
-
-  void move_nodes() override {
+  void update_nodes() override {
     const NodeInertia<Device> inertia(device_);
-    if (!forces_apart()) {
-      this->template scatter<Scatter::impulse>();
-      return this->update(nullptr, inertia, [&] { update_nodes<NodeContent::impulse, false>(); });
-    }
-    this->template scatter<Scatter::force>();
+    if (!this->forces_apart())
+      return this->update(nullptr, inertia, [&] { update_columns<NodeContent::impulse, false>(); });
     this->update(forces_.data(), inertia, [&] {
-      settings_.energy_budget ? update_nodes<NodeContent::force, true>() : update_nodes<NodeContent::force, false>();
+      settings_.energy_budget ? update_columns<NodeContent::force, true>()
+                              : update_columns<NodeContent::force, false>();
     });
   }
 
   template <NodeContent content, bool counts>
-  void update_nodes() {
+  void update_columns() {
     Vec4<Real>* const changes = content == NodeContent::force ? forces_.data() : nullptr;
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),

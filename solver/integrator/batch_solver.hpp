@@ -42,8 +42,8 @@ Drift drift_between_sorts(bool deterministic) {
 
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
-/// An integrator whose steps are bounded by the CFL condition: clear, scatter, update, gather. Derived classes scatter
-/// and update the nodes; their constructors end with start(). `by_layers`: waves across the layers bound the step.
+/// An integrator whose steps are bounded by the CFL condition: clear, scatter, update, gather. Derived classes update
+/// the nodes; their constructors end with start(). `by_layers`: waves across the layers bound the step.
 template <class Real, class Device, class Shape, bool by_layers>
 class BatchSolver : public PointSolver<Real, Device, Shape> {
   using Base = PointSolver<Real, Device, Shape>;
@@ -126,11 +126,16 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   }
 
  protected:
-  /// The method gives storage to so many nodes beside their mass and momentum.
-  virtual void resize_nodes(std::size_t count) = 0;
-  virtual void move_nodes() = 0;  ///< scatters the points and updates the nodes
+  /// The method gives storage to so many nodes beside their mass, momentum and force.
+  virtual void resize_nodes(std::size_t) {}
+  virtual void update_nodes() = 0;  ///< once the points are scattered
   /// The memory of the nodes [bytes].
   virtual std::size_t node_bytes() const { return nodes_.bytes() + forces_.bytes(); }
+  /// Whether forces are scattered apart from momentum.
+  bool forces_apart() const {
+    return !by_layers || settings_.remaps_velocity() || settings_.decay_time > 0 || settings_.damping > 0 ||
+           settings_.energy_budget || settings_.submersion.on();
+  }
 
   /// The method sorts the points of the state that the steps begin with.
   void start(const SolverState& state) {
@@ -264,7 +269,12 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
   void step() {
     clear(true);
-    move_nodes();
+    if (forces_apart()) {
+      scatter<by_layers ? Scatter::force : Scatter::springs>();
+    } else if constexpr (by_layers) {
+      scatter<Scatter::impulse>();
+    }
+    update_nodes();
     if (!settings_.remaps_velocity()) return gather<Gather::all>();
     gather<Gather::motion>();
     clear(false);
@@ -336,8 +346,10 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     const ProfilePhase<Device> phase(device_, "sort and storage");
     recording_.forget();
     this->fit(outflow_count);
-    nodes_.resize(static_cast<std::size_t>(grid_.nodes()));
-    resize_nodes(static_cast<std::size_t>(grid_.nodes()));
+    const auto count = static_cast<std::size_t>(grid_.nodes());
+    nodes_.resize(count);
+    if (forces_apart()) forces_.resize(count);
+    resize_nodes(count);
   }
 
   Recording<Device> recording_;  ///< of a step
