@@ -75,7 +75,7 @@ TALUS_HD Real share_before_walls(const GridView<Real>& grid, int i, int j) {
 template <class Real, class Number>
 TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int i, int j, int dx, int dy) {
   const int a = mirrored(i + dx, grid.walls.x), b = mirrored(j + dy, grid.walls.y);
-  if (a < 0 || b < 0 || a >= grid.columns || b >= grid.rows || grid.slot(a, b).offset < 0) return Number(0);
+  if (a < 0 || b < 0 || a >= grid.columns || b >= grid.rows || grid.slot(a, b).layers == 0) return Number(0);
   return mass[grid.column(a, b)] / static_cast<Number>(share_before_walls(grid, a, b));
 }
 

@@ -266,7 +266,7 @@ struct ForgetForces {
     const int across = grid.block_columns_x, rows = blocks_across(grid.rows);
     for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < rows; ++j) {
       for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < across; ++i) {
-        if (grid.slots[j * across + i].offset >= 0) return;
+        if (grid.slots[j * across + i].layers > 0) return;
       }
     }
     contacts.force[c] = {};

@@ -71,7 +71,7 @@ struct GiveStorage {
       slots[b] = BlockSlot{};
       return;
     }
-    slots[b] = BlockSlot{offsets[b], lowest[b], highest[b] - lowest[b] + 1};
+    slots[b] = BlockSlot{offsets[b] - lowest[b] * block_columns, lowest[b], highest[b] - lowest[b] + 1};
     active[places[b]] = b;
   }
 };

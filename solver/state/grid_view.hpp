@@ -34,9 +34,9 @@ TALUS_HD Vec3<Real> normal_of(Real sx, Real sy) {
 enum class Mapping { terrain_following, cartesian };
 
 struct BlockSlot {
-  int offset = -1;  ///< first node; -1: no storage
+  int ground = 0;  ///< first node of layer 0, were that stored
   int first_layer = 0;
-  int layers = 0;
+  int layers = 0;  ///< 0: no storage
 };
 
 /// The bit of a key at which the block begins.
@@ -108,13 +108,13 @@ struct GridView {
   }
   /// The place in storage of the column's node in layer k (k >= 0, inside the slot's range).
   TALUS_HD static int node(const BlockSlot& s, int i, int j, int k) {
-    return s.offset + (k - s.first_layer) * block_columns + ((j & 3) << 2) + (i & 3);
+    return s.ground + k * block_columns + ((j & 3) << 2) + (i & 3);
   }
   /// The place in storage of node (i, j, k), whatever its numbers; -1 where nothing is stored.
   TALUS_HD int find(int i, int j, int k) const {
     if (i < 0 || j < 0 || i >= columns || j >= rows) return -1;
     const BlockSlot& s = slot(i, j);
-    return s.offset < 0 || k < s.first_layer || k >= s.first_layer + s.layers ? -1 : node(s, i, j, k);
+    return k < s.first_layer || k >= s.first_layer + s.layers ? -1 : node(s, i, j, k);
   }
 };
 

@@ -140,7 +140,7 @@ void for_stored_nodes(const GridView<Real>& grid, const std::vector<BlockSlot>& 
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const BlockSlot& slot = slots[static_cast<std::size_t>((j >> 2) * grid.block_columns_x + (i >> 2))];
-      for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k)
+      for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k)
         f(i, j, k, static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k)));
     }
   }

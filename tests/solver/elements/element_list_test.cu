@@ -96,7 +96,7 @@ struct SetAffinely {
   TALUS_HD void operator()(int column) const {
     const int i = column % grid.columns, j = column / grid.columns;
     const BlockSlot slot = grid.slot(i, j);
-    for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+    for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
       x[GridView<Real>::node(slot, i, j, k)] = {0.1 * j - 0.2 * k + 1, -0.1 * i + 0.05 * k, 0.2 * i + 0.3 * j};
     }
   }

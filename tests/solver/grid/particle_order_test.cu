@@ -132,11 +132,11 @@ TEST_P(BlockStorageOn, holds_the_columns_and_layers_within_reach_of_a_point_and_
     const std::vector<BlockSlot> all = slots(device, storage);
     for (std::size_t b = 0; b < all.size(); ++b) {
       if (b == 5 || b == 6) {
-        EXPECT_EQ(all[b].offset, b == 5 ? 0 : 3 * block_columns);
+        EXPECT_EQ(all[b].ground + 2 * block_columns, b == 5 ? 0 : 3 * block_columns);
         EXPECT_EQ(all[b].first_layer, 2);
         EXPECT_EQ(all[b].layers, 3);
       } else {
-        EXPECT_EQ(all[b].offset, -1) << "block " << b;
+        EXPECT_EQ(all[b].layers, 0) << "block " << b;
       }
     }
   });
@@ -166,7 +166,7 @@ TEST_P(BlockStorageOn, is_taken_from_blocks_that_points_have_left) {
     storage.fit(after.view(), {1, 1});
     EXPECT_EQ(active(device, storage), (std::vector<int>{12}));
     EXPECT_EQ(storage.nodes(), 2 * block_columns);
-    EXPECT_EQ(slots(device, storage)[0].offset, -1);
+    EXPECT_EQ(slots(device, storage)[0].layers, 0);
   });
 }
 

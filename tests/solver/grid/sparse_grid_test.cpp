@@ -99,7 +99,7 @@ void expect_stored_around(const ParticleState& s, std::size_t p, const SparseGri
     for (int a = -2; a <= 2; ++a) {
       const int i = s.cell[0][p] + a, j = s.cell[1][p] + b;
       const BlockSlot& slot = view.slot(i, j);
-      ASSERT_GE(slot.offset, 0);
+      ASSERT_GT(slot.layers, 0);
       for (int k = std::max(s.cell[2][p] - 2, 0); k <= s.cell[2][p] + 2; ++k) {
         ASSERT_GE(k, slot.first_layer);
         ASSERT_LT(k, slot.first_layer + slot.layers);

@@ -231,9 +231,10 @@ class ForcesAhead {
 std::vector<Vec3<double>> shear_of_layers(const YieldedBench& bench) {
   std::vector<Vec3<double>> way(static_cast<std::size_t>(bench.grid.nodes()));
   for (const BlockSlot& slot : slots_of(bench.grid)) {
-    for (int n = 0; slot.offset >= 0 && n < slot.layers * block_columns; ++n) {
+    for (int n = 0; n < slot.layers * block_columns; ++n) {
       const double layer = slot.first_layer + n / block_columns, along = 0.01 * std::sin(1.3 * layer);
-      way[static_cast<std::size_t>(slot.offset + n)] = {along, 0.01 * std::cos(0.7 * layer), -0.6 * along};
+      way[static_cast<std::size_t>(slot.ground + slot.first_layer * block_columns + n)] = {
+          along, 0.01 * std::cos(0.7 * layer), -0.6 * along};
     }
   }
   return way;

@@ -35,7 +35,7 @@ TEST(grid_view, nodes_are_found_where_they_are_stored_and_nowhere_else) {
   grid.columns = 6;
   grid.rows = 4;
   grid.block_columns_x = 2;
-  const BlockSlot slots[2] = {{32, 1, 2}, {}};
+  const BlockSlot slots[2] = {{32 - block_columns, 1, 2}, {}};
   grid.slots = slots;
   EXPECT_EQ(grid.find(2, 1, 1), 32 + 1 * block_side + 2);
   EXPECT_EQ(grid.find(2, 1, 2), 32 + block_columns + 1 * block_side + 2);
