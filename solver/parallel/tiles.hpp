@@ -49,6 +49,33 @@ concept ScatterKernel = std::is_constructible_v<typename Kernel::Source, const K
   { kernel.part(n, n) } -> std::same_as<typename Kernel::Number*>;
 };
 
+/// A scatter of vectors that parts the work on a column among as many lanes as they have components. In place of Sums,
+/// Number, parts, store(), part() and add_to_node() it has
+///   shares                              how many lanes part the work on a column
+///   Share                               what its nodes receive from one of them, zero to begin with: a component of
+///                                       each vector, and the scalars of the node whose number is that of the share
+///   add(s, q, t, share)                 adds share t of what the nodes of column q receive from s
+///   give_vectors(share, t, c, n, give)  calls give(number, sum) for share t of the vectors of node c, stored as node n
+///   give_scalars(share, t, n, give)     the same for the scalars, of node t
+///   add_to_node(n, c, shares)           adds all shares of node c to stored node n, whoever else does
+template <class Kernel>
+concept SharedScatter = requires {
+  typename Kernel::Share;
+};
+
+template <SharedScatter Kernel>
+TALUS_HD void scatter_point(const Kernel& kernel, int p) {
+  if (!kernel.counts(p)) return;
+  const typename Kernel::Source source(kernel, p);
+  for (int q = 0; q < Kernel::columns_each; ++q) {
+    typename Kernel::Share shares[Kernel::shares];
+    for (int t = 0; t < Kernel::shares; ++t) kernel.add(source, q, t, shares[t]);
+    const int column = kernel.column_of(source, q);
+    for (int c = 0; c < Kernel::deep; ++c)
+      kernel.add_to_node(kernel.node_in(column, kernel.nodes_of(source).k, c), c, shares);
+  }
+}
+
 /// This function does a scatter's work for one point, alone.
 template <ScatterKernel Kernel>
 TALUS_HD void scatter_point(const Kernel& kernel, int p) {
@@ -64,7 +91,7 @@ TALUS_HD void scatter_point(const Kernel& kernel, int p) {
 }
 
 /// This function runs a scatter over `count` points; on the CPU each point scatters alone, by scatter_point().
-template <ScatterKernel Kernel>
+template <class Kernel>
 void scatter_points(const CpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   for_each_grouped(device, count, groups, kernel);
 }
@@ -98,6 +125,22 @@ __device__ inline std::uint64_t sort_lanes(std::uint64_t key) {
   }
   return key;
 }
+
+/// What the tiles of a shared scatter hold in shared memory.
+template <int each, class Kernel>
+struct SharedTileMemory {
+  using Source = typename Kernel::Source;
+  /// Bytes from source to source: an odd number of those that are read at once, so that lanes meet different banks.
+  static constexpr std::size_t source_bytes = alignof(Source) * (sizeof(Source) / alignof(Source) | 1),
+                               held = tile_warps * each;
+  alignas(16) unsigned char sources[held * source_bytes];
+  int bases[held][Kernel::columns_each];  ///< where layer 0 of every column of a source is stored
+  int order[tile_warps * warp_size];      ///< the sources of a warp in the order of their nodes
+
+  __device__ Source& source(int n) {
+    return *reinterpret_cast<Source*>(sources + static_cast<std::size_t>(n) * source_bytes);
+  }
+};
 
 /// How a warp parts the work on `each` points: teams take a share of the points each, a lane for every column of nodes.
 template <int each, class Kernel>
@@ -149,21 +192,19 @@ inline constexpr int lane_bits = 5, layer_bits = 20;
 
 /// Reads the lane's point into shared memory. Returns a key that orders the points by their first node; that of a lane
 /// whose point does not count is behind all others.
-template <int each, class Kernel>
-__device__ __forceinline__ std::uint64_t read_point(int count, int block, const Kernel& kernel,
-                                                    const TileLane<each, Kernel>& at,
-                                                    TileMemory<each, Kernel>& memory) {
-  const std::uint64_t nothing = ~std::uint64_t{0} << lane_bits | static_cast<unsigned>(at.lane());
-  if (at.lane() >= each) return nothing;
-  const int p = (block * tile_warps + at.warp()) * each + at.lane();
+template <int each, class Kernel, class Memory>
+__device__ __forceinline__ std::uint64_t read_point(int count, int block, const Kernel& kernel, Memory& memory) {
+  const int lane = static_cast<int>(threadIdx.x) % warp_size, warp = static_cast<int>(threadIdx.x) / warp_size;
+  const std::uint64_t nothing = ~std::uint64_t{0} << lane_bits | static_cast<unsigned>(lane);
+  if (lane >= each) return nothing;
+  const int at = warp * each + lane, p = block * tile_warps * each + at;
   if (p >= count || !kernel.counts(p)) return nothing;
-  const auto& source = *new (&memory.source(at.first_source + at.lane())) typename Kernel::Source(kernel, p);
-  for (int q = 0; q < Kernel::columns_each; ++q)
-    memory.bases[at.first_source + at.lane()][q] = kernel.column_of(source, q);
+  const auto& source = *new (&memory.source(at)) typename Kernel::Source(kernel, p);
+  for (int q = 0; q < Kernel::columns_each; ++q) memory.bases[at][q] = kernel.column_of(source, q);
   const auto& n = kernel.nodes_of(source);
   return (static_cast<std::uint64_t>(kernel.grid.column(n.i, n.j)) << layer_bits | static_cast<unsigned>(n.k + 1))
              << lane_bits |
-         static_cast<unsigned>(at.lane());
+         static_cast<unsigned>(lane);
 }
 
 /// The points of a tile in the order of their nodes: bit q of each word is of the q-th.
@@ -249,7 +290,7 @@ __device__ void reduce_tile(int count, int block, const Kernel& kernel) {
   constexpr unsigned all = 0xffffffffu;
   __shared__ TileMemory<each, Kernel> memory;
   const TileLane<each, Kernel> at;
-  const std::uint64_t key = read_point<each>(count, block, kernel, at, memory);
+  const std::uint64_t key = read_point<each>(count, block, kernel, memory);
   if (__all_sync(all, key >> 63)) return;
   const TileOrder order = order_points(key);
   const int first = at.team() * Sizes::share;
@@ -273,6 +314,48 @@ __device__ void reduce_tile(int count, int block, const Kernel& kernel) {
         sums[c] = {};
       }
     }
+  }
+}
+
+/// The same for a scatter that parts the work on a column: a team has a lane for every share of every column. What
+/// lanes of one column add lies side by side: an atomic of 8 bytes takes as long as the 32 around it.
+template <int each, SharedScatter Kernel>
+__device__ void reduce_tile(int count, int block, const Kernel& kernel) {
+  constexpr int columns = Kernel::columns_each, deep = Kernel::deep, members = columns * Kernel::shares,
+                teams = warp_size / members, part = (each + teams - 1) / teams;
+  __shared__ SharedTileMemory<each, Kernel> memory;
+  const std::uint64_t key = read_point<each>(count, block, kernel, memory);
+  if (__all_sync(0xffffffffu, key >> 63)) return;
+  const TileOrder order = order_points(key);
+  const int lane = static_cast<int>(threadIdx.x) % warp_size, warp = static_cast<int>(threadIdx.x) / warp_size,
+            team = lane / members, q = lane % columns, t = lane % members / columns;
+  int* const places = memory.order + warp * warp_size;
+  places[lane] = warp * each + order.point;
+  __syncwarp();
+  const int counting = __popc(order.counting), first = team * part;
+  const int last = team >= teams ? 0 : first + part < counting ? first + part : counting;
+  const auto add_to = [](auto* number, auto value) { atomicAdd(number, value); };
+  typename Kernel::Share share;
+  for (int n = first; n < last; ++n) {
+    const int at = places[n];
+    const auto& source = memory.source(at);
+    kernel.add(source, q, t, share);
+    if (n + 1 < last && (order.staying >> n & 1u) != 0) continue;
+    const bool climbs = n + 1 < last && (order.climbing >> n & 1u) != 0;
+    const int base = memory.bases[at][q], k = kernel.nodes_of(source).k;
+    typename Kernel::Share next;
+    kernel.give_scalars(share, t, kernel.node_in(base, k, t), add_to);
+    kernel.give_vectors(share, t, 0, kernel.node_in(base, k, 0), add_to);
+    TALUS_UNROLL
+    for (int c = 1; c < deep; ++c) {
+      if (climbs) {
+        next.momentum[c - 1] = share.momentum[c];
+        next.force[c - 1] = share.force[c];
+      } else {
+        kernel.give_vectors(share, t, c, kernel.node_in(base, k, c), add_to);
+      }
+    }
+    share = next;
   }
 }
 
@@ -324,7 +407,20 @@ struct EachTileInOrder {
       __syncwarp();
       for (int q = 0; q < warp_size; ++q) {
         if (!counts[q]) continue;
-        if (lane < Kernel::columns_each) {
+        if constexpr (SharedScatter<Kernel>) {
+          const int column = lane % Kernel::columns_each, t = lane / Kernel::columns_each,
+                    k = kernel.nodes_of(tile[q]).k;
+          if (t < Kernel::shares) {
+            const auto add_to = [](auto* number, auto value) { *number += value; };
+            typename Kernel::Share share;
+            kernel.add(tile[q], column, t, share);
+            const int base = kernel.column_of(tile[q], column);
+            for (int c = 0; c < Kernel::deep; ++c) {
+              if (kernel.owns(k, c)) kernel.give_vectors(share, t, c, kernel.node_in(base, k, c), add_to);
+            }
+            if (kernel.owns(k, t)) kernel.give_scalars(share, t, kernel.node_in(base, k, t), add_to);
+          }
+        } else if (lane < Kernel::columns_each) {
           typename Kernel::Sums sums[Kernel::deep];
           kernel.add(tile[q], lane, sums);
           const int column = kernel.column_of(tile[q], lane);
@@ -348,7 +444,7 @@ struct EachTileInOrder {
 
 /// On a GPU warps scatter tiles of points, and add what their lanes have in common before it goes to memory; with
 /// groups.in_order a block takes the points of a column block, colour by colour.
-template <ScatterKernel Kernel>
+template <class Kernel>
 void scatter_points(const GpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
   if (count <= 0) return;
   const KernelTime<GpuDevice> time(device, kernel, count);

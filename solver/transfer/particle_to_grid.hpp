@@ -24,12 +24,8 @@ inline constexpr bool forces_apart(Scatter what) { return what == Scatter::force
 /// whose w takes the spring to the node above (T6b).
 template <class Real, class Shape, Scatter what, class Laws = MaterialLaws>
 struct ParticleToGrid {
-  using Number = Real;
   static constexpr bool hot = true;  ///< see run_range()
-  static constexpr int width = Shape::width, columns_each = width * width, deep = width,
-                       parts = what == Scatter::springs ? 8
-                               : what == Scatter::force ? 7
-                                                        : 4;
+  static constexpr int width = Shape::width, columns_each = width * width, deep = width, shares = 3;
   GridView<Real> grid;
   ParticleView<Real> points;
   Materials<Real, Laws> materials;
@@ -47,18 +43,26 @@ struct ParticleToGrid {
            grid.nodes * static_cast<double>((forces_apart(what) ? 4 : 2) * sizeof(*nodes));
   }
 
+  /// A weight along one direction and its slope, per cell.
+  struct alignas(2 * sizeof(Real)) Weight {
+    Real value, slope;
+  };
+  /// One component of what a point gives.
+  struct alignas(2 * sizeof(Real)) Component {
+    Real corner;        ///< of the velocity at the first node
+    Real turn[3] = {};  ///< its change per node
+    Real pull[3] = {};  ///< of -V tau, mapped to reference coordinates and per cell
+    Real pulled = 0;    ///< by the point's load, in the units of `pull`
+  };
   /// A point as its nodes see it: the part of its stencil that they need. It is as small as can be, for it decides how
-  /// many a GPU holds at once.
-  struct Source {
+  /// many a GPU holds at once, and lies so that a lane reads two numbers at a time.
+  struct alignas(2 * sizeof(Real)) Source {
     static constexpr std::size_t wide = Shape::width;
-    int i, j, k;
-    Real wx[wide], wy[wide], wz[wide], gx[wide], gy[wide], gz[wide];
+    Weight x[wide], y[wide], z[wide];
+    Component of[3];
     Real mass;
-    Vec3<Real> corner;    ///< velocity at the first node
-    Mat3<Real> turn{};    ///< its change per node
-    Mat3<Real> pull{};    ///< columns of -V tau, mapped to reference coordinates and per cell
-    Vec3<Real> pulled{};  ///< by its load, in the units of `pull`
-    Real stiffness = 0;   ///< of the springs between its layers, for a slope of one per cell [N/m]
+    Real stiffness = 0;  ///< of the springs between its layers, for a slope of one per cell [N/m]
+    int i, j, k;
 
     TALUS_HD Source(const ParticleToGrid& kernel, int p)
         : Source(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
@@ -67,16 +71,15 @@ struct ParticleToGrid {
     TALUS_HD Source(const ParticleToGrid& kernel, int p, const Stencil<Real, Shape>& s) : i(s.i), j(s.j), k(s.k) {
       TALUS_UNROLL
       for (int a = 0; a < width; ++a) {
-        wx[a] = s.wx[a];
-        wy[a] = s.wy[a];
-        wz[a] = s.wz[a];
-        gx[a] = s.gx[a];
-        gy[a] = s.gy[a];
-        gz[a] = s.gz[a];
+        x[a] = {s.wx[a], s.gx[a]};
+        y[a] = {s.wy[a], s.gy[a]};
+        z[a] = {s.wz[a], s.gz[a]};
       }
       const ParticleView<Real>& all = kernel.points;
       const Real volume = all.volume[p];
       mass = volume * kernel.materials.density(all.material, p);
+      Mat3<Real> pull{}, turn{};
+      Vec3<Real> pulled{};
       if constexpr (what != Scatter::momentum) {
         const MaterialState<Real> state{all.elastic_of(p), all.log_volume[p],
                                         kernel.dilatant ? all.plastic_log_volume[p] : Real(0)};
@@ -94,11 +97,14 @@ struct ParticleToGrid {
           pulled = Vec3<Real>{Real(f.x), Real(f.y), Real(f.z)} * (volume * dt);
         }
       }
-      corner = all.velocity_of(p);
+      Vec3<Real> corner = all.velocity_of(p);
       if (kernel.affine) {
         turn = all.affine_of(p);
         corner += turn * Vec3<Real>{s.near_x, s.near_y, s.near_z};
       }
+      of[0] = {corner.x, {turn.a.x, turn.b.x, turn.c.x}, {pull.a.x, pull.b.x, pull.c.x}, pulled.x};
+      of[1] = {corner.y, {turn.a.y, turn.b.y, turn.c.y}, {pull.a.y, pull.b.y, pull.c.y}, pulled.y};
+      of[2] = {corner.z, {turn.a.z, turn.b.z, turn.c.z}, {pull.a.z, pull.b.z, pull.c.z}, pulled.z};
     }
   };
 
@@ -111,12 +117,11 @@ struct ParticleToGrid {
            (layer * layer);
   }
 
-  /// The sums that a node receives: mass [kg], momentum [kg m/s] and force [N], or impulse [N s] as part of the
-  /// momentum.
-  struct Sums {
-    Real mass = 0;
-    Vec3<Real> momentum, force;
-    Real spring = 0;  ///< to the node above [N/m]
+  /// A third of what the nodes of a column receive: a component of momentum [kg m/s] and force [N] of all of them, or
+  /// of impulse [N s] as part of the momentum, and mass [kg] and the spring to the node above [N/m] of one of them.
+  struct Share {
+    static constexpr auto each = static_cast<std::size_t>(deep);
+    Real mass = 0, spring = 0, momentum[each] = {}, force[each] = {};
   };
 
   /// One thread: one point. It scatters alone, as on a CPU.
@@ -130,54 +135,56 @@ struct ParticleToGrid {
   }
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
   TALUS_HD static bool owns(int k, int c) { return k + c >= 0; }  ///< false below the ground, where there is no node
-  TALUS_HD static void store(const Sums& sums, Real* to) {
-    to[0] = sums.mass;
-    to[1] = sums.momentum.x;
-    to[2] = sums.momentum.y;
-    to[3] = sums.momentum.z;
-    if constexpr (forces_apart(what)) {
-      to[4] = sums.force.x;
-      to[5] = sums.force.y;
-      to[6] = sums.force.z;
-    }
-    if constexpr (what == Scatter::springs) to[7] = sums.spring;
-  }
-  TALUS_HD Real* part(int node, int q) const {
-    return q < 4 ? &nodes[node].w + q : q < 7 ? &forces[node].x + (q - 4) : &forces[node].w;
-  }
   /// Whether point p gives anything: it is in the domain, and the loop has not halted.
   TALUS_HD bool counts(int p) const { return clock->alarms.halt == running && points.cell[0][p] >= 0; }
 
-  /// The nodes of column q receive mass (T3), momentum (T4) and force (T5).
-  TALUS_HD void add(const Source& s, int q, Sums (&sums)[static_cast<std::size_t>(deep)]) const {
-    const int a = q % width, b = q / width;
-    const Real weight = s.wx[a] * s.wy[b], carried = weight * s.mass;
-    Vec3<Real> velocity = s.corner, sideways{}, upwards{};
-    if (affine) velocity += s.turn.a * Real(a) + s.turn.b * Real(b);
-    if constexpr (what != Scatter::momentum) {
-      // -V tau . grad N is linear in the weights' slopes.
-      sideways = s.pull.a * (s.gx[a] * s.wy[b]) + s.pull.b * (s.wx[a] * s.gy[b]);
-      upwards = s.pull.c * weight;
-      if (loads) sideways += s.pulled * weight;
-    }
+  /// Share t of what the nodes of column q receive: mass (T3), momentum (T4) and force (T5).
+  TALUS_HD static void add(const Source& s, int q, int t, Share& to) {
+    const Weight x = s.x[q % width], y = s.y[q / width];
+    const Component& own = s.of[t];
+    const Real weight = x.value * y.value, carried = weight * s.mass, step = carried * own.turn[2];
+    // -V tau . grad N is linear in the weights' slopes.
+    const Real sideways = own.pull[0] * (x.slope * y.value) + own.pull[1] * (x.value * y.slope) + own.pulled * weight,
+               upwards = own.pull[2] * weight;
+    Real momentum = carried * (own.corner + own.turn[0] * Real(q % width) + own.turn[1] * Real(q / width));
     TALUS_UNROLL
     for (int c = 0; c < deep; ++c) {
-      const Real share = carried * s.wz[c];
-      sums[c].mass += share;
-      sums[c].momentum += velocity * share;
-      if (affine) velocity += s.turn.c;
-      if constexpr (what == Scatter::impulse) sums[c].momentum += sideways * s.wz[c] + upwards * s.gz[c];
-      if constexpr (forces_apart(what)) sums[c].force += sideways * s.wz[c] + upwards * s.gz[c];
-      // Slopes grow from one layer to the next: the lowest and the highest bound those of two springs.
-      if constexpr (what == Scatter::springs) {
-        if (c + 1 < deep) sums[c].spring += s.stiffness * weight * (c == 0 ? -s.gz[0] : s.gz[deep - 1]);
+      const Weight z = s.z[c];
+      to.momentum[c] += momentum * z.value;
+      momentum += step;
+      if constexpr (what != Scatter::momentum) {
+        Real& force = forces_apart(what) ? to.force[c] : to.momentum[c];
+        force += sideways * z.value;
+        force += upwards * z.slope;
       }
+    }
+    to.mass += carried * s.z[t < deep ? t : 0].value;
+    // Slopes grow from one layer to the next: the lowest and the highest bound those of two springs.
+    if constexpr (what == Scatter::springs)
+      to.spring += s.stiffness * weight * (t == 0 ? -s.z[0].slope : s.z[deep - 1].slope);
+  }
+
+  /// The method calls give(number, sum) for share t of the vectors of node c of its column, stored as node n.
+  template <class Give>
+  TALUS_HD void give_vectors(const Share& s, int t, int c, int n, const Give& give) const {
+    give((&nodes[n].x) + t, s.momentum[c]);
+    if constexpr (forces_apart(what)) give((&forces[n].x) + t, s.force[c]);
+  }
+  /// The same for mass and spring, of node t.
+  template <class Give>
+  TALUS_HD void give_scalars(const Share& s, int t, int n, const Give& give) const {
+    if (t >= deep) return;
+    give(&nodes[n].w, s.mass);
+    if constexpr (what == Scatter::springs) {
+      if (t + 1 < deep) give(&forces[n].w, s.spring);
     }
   }
 
-  TALUS_HD void add_to_node(int n, const Sums& sums) const {
-    scatter_add(&nodes[n], sums.mass, sums.momentum);
-    if constexpr (forces_apart(what)) scatter_add(&forces[n], sums.spring, sums.force);
+  /// The method adds the shares of node c of a column to stored node n.
+  TALUS_HD void add_to_node(int n, int c, const Share (&s)[shares]) const {
+    scatter_add(&nodes[n], s[c].mass, {s[0].momentum[c], s[1].momentum[c], s[2].momentum[c]});
+    if constexpr (forces_apart(what))
+      scatter_add(&forces[n], c + 1 < deep ? s[c].spring : Real(0), {s[0].force[c], s[1].force[c], s[2].force[c]});
   }
 };
 

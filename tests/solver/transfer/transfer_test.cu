@@ -225,7 +225,7 @@ class Transfers : public InEachPlace {
     for (int j = 0; j < grid.shape().rows; ++j) {
       for (int i = 0; i < grid.shape().columns; ++i) {
         const auto& slot = slots[static_cast<std::size_t>((j >> 2) * blocks_x + (i >> 2))];
-        for (int k = slot.first_layer; slot.offset >= 0 && k < slot.first_layer + slot.layers; ++k) {
+        for (int k = slot.first_layer; k < slot.first_layer + slot.layers; ++k) {
           auto& node = field[static_cast<std::size_t>(GridView<Real>::node(slot, i, j, k))];
           const auto value = [&](int a) {
             return static_cast<Real>(slope[a][0] * i + slope[a][1] * j + slope[a][2] * k);
