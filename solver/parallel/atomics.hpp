@@ -150,4 +150,12 @@ TALUS_HD void scatter_add(Vec4<Real>* target, Real w, const Vec3<Real>& v) {
   scatter_add(&target->z, v.z);
 }
 
+/// This function brings a value near to a GPU's multiprocessor, ahead of its use.
+template <class T>
+TALUS_HD void prefetch([[maybe_unused]] const T* value) {
+#if defined(__CUDA_ARCH__)
+  asm volatile("prefetch.global.L1 [%0];" ::"l"(value));
+#endif
+}
+
 }  // namespace talus

@@ -97,6 +97,7 @@ struct GridToParticle {
 
   TALUS_HD void operator()(int p) const {
     if (clock->alarms.halt != running || points.cell[0][p] < 0) return;
+    prefetch(p);
     const Stencil<Real, Shape> s(grid, points, p);
     const Sums sums = gather(s);
     const Real dt = Real(clock->step_size);
@@ -108,6 +109,18 @@ struct GridToParticle {
   }
 
  private:
+  /// The method asks for what of point p is needed once its nodes are read, whose sums leave no registers for it: a
+  /// wait for memory less.
+  TALUS_HD void prefetch(int p) const {
+    for (int q = 0; q < 3; ++q) talus::prefetch(points.velocity[q] + p);
+    if constexpr (part != Gather::motion) {
+      for (int q = 0; q < 6; ++q) talus::prefetch(points.elastic[q] + p);
+      talus::prefetch(points.log_volume + p);
+      talus::prefetch(points.volume + p);
+      talus::prefetch(home + p);
+    }
+  }
+
   /// What a node with slopes nx, ny adds to Sums::bend, by the gradient of its weight.
   TALUS_HD static Vec3<Real> bend_of(Real nx, Real ny, Real across, Real along) {
     return {nx * across, ny * along, ny * across + nx * along};
