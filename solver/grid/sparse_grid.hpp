@@ -136,8 +136,10 @@ class SparseGrid {
   /// drawn out too far, and gives storage to every column and layer they reach until they have drifted too far.
   void fit(Particles<Real, Device>& points, int outflow_count);
 
-  const Device& device() const { return device_; }  ///< device that the grid is on
-  GridView<Real> view() const;                      ///< grid as kernels see it, until the next fit()
+  const Device& device() const { return device_; }        ///< device that the grid is on
+  GridView<Real> view() const;                            ///< grid as kernels see it, until the next fit()
+  const Drift& drift() const { return drift_; }           ///< see SparseGrid()
+  void set_drift(const Drift& drift) { drift_ = drift; }  ///< from the next fit() on
   /// The method sets the nodes at which material is met from now on.
   void set_walls(const WallNodes& nodes) { walls_ = nodes; }
   const TerrainTables& ground() const { return tables_; }  ///< terrain as kernels use it, on the host

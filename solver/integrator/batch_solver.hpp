@@ -32,12 +32,24 @@ int steps_between_sorts_on_gpu(int points) {
 }
 /// The steps between sorts on a CPU: in places of memory that lie apart, steps become slower.
 inline constexpr int cpu_steps_between_sorts = 32;
-/// The way that points may go before they are sorted: a sort takes as long as a dozen steps of a small scene, and more
-/// empty columns are stored at the rim for it. Layers are fewer, for steps by columns go through them one by one.
-template <class Device>
-Drift drift_between_sorts(bool deterministic) {
-  if (!Device::is_gpu || deterministic) return {};
-  return {.columns = 6, .layers = 3};
+/// The least and the most way that points on a GPU may go before they are sorted. A sort takes as long as a dozen steps
+/// of a small scene; for more way, more empty columns and layers are stored and gone through in every step.
+inline constexpr Drift least_drift{.columns = 6, .layers = 3}, most_drift{.columns = 16, .layers = 16};
+/// The steps between sorts that the drift on a GPU is to allow.
+inline constexpr int steps_worth_a_sort = 24;
+
+/// The drift after `steps` steps that ended because a point went as far as `now` allows: across the layers where it has
+/// `climbed`, else along the columns.
+inline Drift drift_after(Drift now, int steps, bool climbed) {
+  const auto fitted = [steps](int way, int least, int most) {
+    return std::clamp(way * steps_worth_a_sort / std::max(steps, 1), least, most);
+  };
+  if (climbed) {
+    now.layers = fitted(now.layers, least_drift.layers, most_drift.layers);
+  } else {
+    now.columns = fitted(now.columns, least_drift.columns, most_drift.columns);
+  }
+  return now;
 }
 
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
@@ -54,7 +66,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
 
  public:
   BatchSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
-      : Base(device, scene, settings, state, needs(settings), drift_between_sorts<Device>(settings.deterministic)),
+      : Base(device, scene, settings, state, needs(settings), drifts_far(settings) ? least_drift : Drift{}),
         recording_(device),
         columns_(device, surroundings_.bed(), settings, scene.grid, this->submersion()) {}
 
@@ -76,7 +88,12 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     int halt = clock.alarms.halt;
     this->measured_ = false;
     if (halt == at_event) look_back(clock_.data());
-    if (halt == wants_sort) expected_ = clock.sorting.steps_since;
+    if (halt == wants_sort) {
+      expected_ = clock.sorting.steps_since;
+      const int request = clock.alarms.request;
+      if (request != running && drifts_far(settings_))
+        grid_.set_drift(drift_after(grid_.drift(), expected_, request == climbed));
+    }
     // A sort comes before an event of the same time (Clock::halt_where_due), whose records see who has left.
     if (halt == wants_sort || (halt == at_event && clock.outflow.count > 0)) {
       report.outflow_volume = clock.outflow.volume;
@@ -217,6 +234,8 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
 
  private:
+  /// Whether points may go further from home than a cell: a CPU, and sums in order, go by blocks of four columns.
+  static bool drifts_far(const IntegratorSettings& settings) { return Device::is_gpu && !settings.deterministic; }
   static ParticleNeeds needs(const IntegratorSettings& settings) {
     ParticleNeeds n = settings.needs;
     n.remapped_velocity = settings.remaps_velocity();

@@ -16,7 +16,8 @@ enum Halt : int {
   running = 0,
   at_event = 1,    ///< time has reached next_event
   wants_sort = 2,  ///< a point has left its home cell's neighbourhood, or enough steps have passed
-  failed = 3       ///< a point's state is not a number
+  failed = 3,      ///< a point's state is not a number
+  climbed = 4      ///< a request to sort, of a point that has left its home across the layers
 };
 
 /// The maps of speed and pressure are recorded (T25) at every event, and between events as the fastest point has gone

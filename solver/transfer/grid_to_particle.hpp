@@ -298,17 +298,13 @@ struct GridToParticle {
     const Real flow = Real(fabs(v.x) * hx + fabs(v.y) * hx + fabs(sums.climb) * hz);
     atomic_max_positive(&clock->control.rate_bits, static_cast<float>(waves + flow));
     atomic_max_positive(&clock->control.speed_bits, static_cast<float>(speed));
-    if (strayed(home[p], i, j, k)) request_sort();
-  }
-
-  TALUS_HD bool strayed(std::uint64_t key, int i, int j, int k) const {
-    const HomeCell at(grid.block_columns_x, key);
+    const HomeCell at(grid.block_columns_x, home[p]);
     const int below = grid.homes_below ? 1 : 0;  // storage goes by where a point was, a cell above its home at most
-    const int di = i - at.i, dj = j - at.j, dk = k - at.k;
-    return di > grid.drift || di < below - grid.drift || dj > grid.drift || dj < below - grid.drift ||
-           dk > grid.climb || dk < below - grid.climb;
+    const auto beyond = [&](int way, int most) { return way > most || way < below - most; };
+    const bool high = beyond(k - at.k, grid.climb);
+    if (high || beyond(i - at.i, grid.drift) || beyond(j - at.j, grid.drift))
+      replace_if(&clock->alarms.request, running, high ? climbed : wants_sort);
   }
-  TALUS_HD void request_sort() const { replace_if(&clock->alarms.request, running, wants_sort); }
 };
 
 }  // namespace talus

@@ -36,10 +36,14 @@ TEST(SortsOnAGpu, are_frequent_only_for_many_points_with_wide_stencils) {
   EXPECT_EQ(steps_between_sorts_on_gpu<Linear>(1000), steps_between_sorts_on_gpu<Linear>(1000000));
 }
 
-TEST(DriftBetweenSorts, is_wide_where_neither_order_nor_colours_of_blocks_bound_it) {
-  EXPECT_EQ(drift_between_sorts<GpuDevice>(true).columns, 1);
-  EXPECT_EQ(drift_between_sorts<CpuDevice>(false).columns, 1);
-  EXPECT_GT(drift_between_sorts<GpuDevice>(false).columns, 1);
+TEST(DriftOnAGpu, follows_what_points_went_between_sorts) {
+  const Drift now{.columns = 8, .layers = 5};
+  EXPECT_EQ(drift_after(now, steps_worth_a_sort / 2, false).columns, 16) << "twice as far in the time wanted";
+  EXPECT_EQ(drift_after(now, steps_worth_a_sort / 2, false).layers, 5) << "no layer asked for it";
+  EXPECT_EQ(drift_after(now, steps_worth_a_sort / 2, true).layers, 10);
+  EXPECT_EQ(drift_after(now, steps_worth_a_sort, true).layers, 5) << "as it should be";
+  EXPECT_EQ(drift_after(now, 1, true).layers, most_drift.layers);
+  EXPECT_EQ(drift_after(most_drift, 1000, false).columns, least_drift.columns) << "less is stored again";
 }
 
 TEST(NodeStep, damping_takes_a_share_of_every_component_against_the_velocity) {
