@@ -202,9 +202,11 @@ void for_each(const GpuDevice& device, int count, const Kernel& kernel) {
   const bool busy = detail::is_busy_with(count);
   const int threads = detail::threads_for(busy), blocks = (count + threads - 1) / threads;
   if constexpr (requires { Kernel::dense; }) {
-    if (Kernel::dense > 0 && busy) {
-      return detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
-                                detail::EachIndexDensely<Kernel::dense, Kernel>{{count, kernel}});
+    if constexpr (Kernel::dense > 1) {
+      if (busy) {
+        return detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
+                                  detail::EachIndexDensely<Kernel::dense, Kernel>{{count, kernel}});
+      }
     }
   }
   detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads, detail::EachIndex<Kernel>{count, kernel});
