@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <future>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -123,8 +124,7 @@ std::vector<std::string> needed_stages(const Request& request, const recipe::Rec
   return stages;
 }
 
-int run_one(const std::string& stage, const StageCall& call) {
-  const Stage program = stage_called(stage);
+int run_one(const Stage& program, const StageCall& call) {
   const StageOutcome outcome = call_stage(program, call);
   if (outcome.code == ExitCode::success && context().verbosity != Verbosity::brief) print_results(outcome.results);
   return report_faults(program.name, outcome);
@@ -156,14 +156,22 @@ StageCall outdated_call(const Request& request, const std::string& stage) {
 
 int bring_up_to_date(const Request& request, const std::string& stage) {
   const BriefStage brief(stage);
-  return run_one(stage, outdated_call(request, stage));
+  Stage program = stage_called(stage);
+  std::future<void> gpu;
+  if (stage == "preprocess" && request.on != "cpu") {  // where that runs, talus-solve runs next
+    program.run = [&gpu, run = program.run](StageContext& context) {
+      gpu = solver::begin_gpu(context.recipe);
+      run(context);
+    };
+  }
+  return run_one(program, outdated_call(request, stage));
 }
 
 int print_plan(const Request& request) {
   stop_if_interrupted("running the stages");
   StageCall call = call_of(request, "solve");
   call.flags.emplace_back("--plan", "");
-  return run_one("solve", call);
+  return run_one(stage_called("solve"), call);
 }
 
 /// Where a stability.toml stands beside recipe.toml, what it finds is what the recipe lets go: it runs first.
@@ -262,7 +270,7 @@ int compare_runs(const fs::path& first, const fs::path& second, const Request& r
   asked.shown = first;
   StageCall call = call_of(asked, "postprocess");
   call.flags.emplace_back("--against", second.string());
-  return run_one("postprocess", call);
+  return run_one(stage_called("postprocess"), call);
 }
 
 }  // namespace talus::command
