@@ -61,7 +61,7 @@ class PointSolver : public Solver {
             .contacts = surroundings_.contact().state()};
   }
 
-  ParticleState shown() const override { return points_.download(Kept::in_frames); }
+  void show(ParticleState& to) const override { points_.download(Kept::in_frames, to); }
 
   Energies energies() override {
     if (!measured_) measuring_.repeat(1, [&] { start_measures(); });

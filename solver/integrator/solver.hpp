@@ -77,7 +77,13 @@ class Solver {
   /// All that a checkpoint keeps; what a run may go on from where BatchReport::can_be_saved.
   virtual SolverState state() const = 0;
   /// The points as frames show them: without affine velocity, acceleration, boxes and loads, whose lists are empty.
-  virtual ParticleState shown() const = 0;
+  ParticleState shown() const {
+    ParticleState points;
+    show(points);
+    return points;
+  }
+  /// The same into lists that another call has filled, or empty ones.
+  virtual void show(ParticleState& to) const = 0;
   virtual Energies energies() = 0;  ///< sums over the points
   virtual Packing packing() = 0;    ///< how densely the points are packed; at an event, or just after a sort
   /// The vertical thickness (T25), initial volume over cell area, [rows * columns] [m]; its sum times the cell area is

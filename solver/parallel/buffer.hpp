@@ -58,9 +58,14 @@ class Buffer {
   }
   /// The method returns a copy of all elements, once all work that was started on the device is done.
   std::vector<T> download() const {
-    std::vector<T> values(size_);
-    if (!values.empty()) detail::download(device_, values.data(), data_, size_ * sizeof(T));
+    std::vector<T> values;
+    download(values);
     return values;
+  }
+  /// The same into a list, whose memory it keeps where that is enough.
+  void download(std::vector<T>& to) const {
+    to.resize(size_);
+    if (!to.empty()) detail::download(device_, to.data(), data_, size_ * sizeof(T));
   }
   /// The method sets every byte in use to zero.
   void fill_zero() {

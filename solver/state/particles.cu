@@ -83,7 +83,7 @@ void append_list(Buffer<Number, Device>& to, const std::vector<Value>& list) {
 template <class Number, class Device, class Value>
 void download_list(const Buffer<Number, Device>& from, std::vector<Value>& to) {
   if constexpr (std::is_same_v<Number, Value>) {
-    to = from.download();
+    from.download(to);
   } else {
     const std::vector<Number> values = from.download();
     to.assign(values.begin(), values.end());
@@ -285,8 +285,7 @@ void Particles<Real, Device>::append(const ParticleState& more) {
 }
 
 template <class Real, class Device>
-ParticleState Particles<Real, Device>::download(Kept least) const {
-  ParticleState state;
+void Particles<Real, Device>::download(Kept least, ParticleState& to) const {
   const auto download_one = [&](const ParticleField& field, int, const auto& array, auto& list) {
     if (field.kept < least) return;
     if (holds(field)) {
@@ -295,8 +294,7 @@ ParticleState Particles<Real, Device>::download(Kept least) const {
       list.assign(static_cast<std::size_t>(count_), field.initial);
     }
   };
-  visit_particle_fields(download_one, arrays_, state);
-  return state;
+  visit_particle_fields(download_one, arrays_, to);
 }
 
 template <class Real, class Device>

@@ -297,7 +297,13 @@ class Particles {
   void upload(const ParticleState& state);
   void append(const ParticleState& more);  ///< adds points behind those that are there
   /// The fields that are kept at least so long, in double; those that are not needed have their initial value.
-  ParticleState download(Kept least = Kept::in_checkpoint) const;
+  ParticleState download(Kept least = Kept::in_checkpoint) const {
+    ParticleState state;
+    download(least, state);
+    return state;
+  }
+  /// The same into lists, whose memory they keep where that is enough; other fields stay as they are.
+  void download(Kept least, ParticleState& to) const;
   ParticleView<Real> view();            ///< points as kernels see them, until the next upload() or reorder()
   int count() const { return count_; }  ///< number of points
   std::size_t bytes() const;

@@ -62,13 +62,26 @@ PointFrame point_frame(const Scene& scene, const SolveOptions& options, double t
 void FrameRecorder::put(double time, Solver& solver) {
   const FramePoints shown = options_.point_frames;
   if (!run_) run_ = std::make_unique<RunWriter>(file_);
-  writing_.start([this, time, shown, thickness = solver.thickness(),
-                  state = shown == FramePoints::none ? ParticleState{} : solver.shown()] {
+  ParticleState points = spare_state();
+  if (shown != FramePoints::none) solver.show(points);
+  writing_.start([this, time, shown, thickness = solver.thickness(), state = std::move(points)]() mutable {
     PointFrame frame = point_frame(scene_, options_, time, state);
+    {
+      const std::lock_guard lock(spare_guard_);
+      spare_.push_back(std::move(state));
+    }
     if (shown == FramePoints::rounded) round(frame, scene_.grid);
     if (!frame.id.empty()) run_->append(frame);
     run_->append_thickness(time, scene_.map, thickness);
   });
+}
+
+ParticleState FrameRecorder::spare_state() {
+  const std::lock_guard lock(spare_guard_);
+  if (spare_.empty()) return {};
+  ParticleState state = std::move(spare_.back());
+  spare_.pop_back();
+  return state;
 }
 
 std::filesystem::path FrameRecorder::saved_file(std::int64_t first) const {

@@ -8,7 +8,9 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "common/run/run_file.hpp"
 #include "common/stage/context.hpp"
@@ -79,6 +81,7 @@ class FrameRecorder {
 
  private:
   std::filesystem::path saved_file(std::int64_t first) const;
+  ParticleState spare_state();  ///< one of a frame that has been packed, if there is one
   h5::File open_saved(std::int64_t first) const;
 
   const Scene& scene_;
@@ -87,7 +90,9 @@ class FrameRecorder {
   std::string run_id_;
   std::int64_t saved_ = 0;          ///< frames in files of their own
   std::unique_ptr<RunWriter> run_;  ///< the frames since, once there is one
-  SideWork writing_;                ///< last: what it does needs the rest
+  std::mutex spare_guard_;
+  std::vector<ParticleState> spare_;  ///< new memory for every frame takes longer than to fill it
+  SideWork writing_;                  ///< last: what it does needs the rest
 };
 
 }  // namespace talus::solver
