@@ -49,18 +49,18 @@ struct ParticleToGrid {
   };
   /// One component of what a point gives.
   struct alignas(2 * sizeof(Real)) Component {
-    Real corner;        ///< of the velocity at the first node
+    Real corner;        ///< of the momentum that the whole mass would have at the first node
     Real turn[3] = {};  ///< its change per node
     Real pull[3] = {};  ///< of -V tau, mapped to reference coordinates and per cell
     Real pulled = 0;    ///< by the point's load, in the units of `pull`
   };
-  /// A point as its nodes see it: the part of its stencil that they need. It is as small as can be, for it decides how
-  /// many a GPU holds at once, and lies so that a lane reads two numbers at a time.
+  /// A point as its nodes see it: the part of its stencil that they need. It is as small as can be, and a lane reads as
+  /// little of it as can be, two numbers at a time: that decides how many points a GPU holds, and how long it takes.
   struct alignas(2 * sizeof(Real)) Source {
     static constexpr std::size_t wide = Shape::width;
-    Weight x[wide], y[wide], z[wide];
+    Weight x[wide], y[wide], low, high;  ///< across the layers the first and the last; all sum to one, slopes to zero
     Component of[3];
-    Real mass;
+    Real layers[wide];   ///< mass by the weights across the layers [kg]
     Real stiffness = 0;  ///< of the springs between its layers, for a slope of one per cell [N/m]
     int i, j, k;
 
@@ -73,11 +73,13 @@ struct ParticleToGrid {
       for (int a = 0; a < width; ++a) {
         x[a] = {s.wx[a], s.gx[a]};
         y[a] = {s.wy[a], s.gy[a]};
-        z[a] = {s.wz[a], s.gz[a]};
       }
+      low = {s.wz[0], s.gz[0]};
+      high = {s.wz[width - 1], s.gz[width - 1]};
       const ParticleView<Real>& all = kernel.points;
-      const Real volume = all.volume[p];
-      mass = volume * kernel.materials.density(all.material, p);
+      const Real volume = all.volume[p], mass = volume * kernel.materials.density(all.material, p);
+      TALUS_UNROLL
+      for (int c = 0; c < width; ++c) layers[c] = mass * s.wz[c];
       Mat3<Real> pull{}, turn{};
       Vec3<Real> pulled{};
       if constexpr (what != Scatter::momentum) {
@@ -102,6 +104,8 @@ struct ParticleToGrid {
         turn = all.affine_of(p);
         corner += turn * Vec3<Real>{s.near_x, s.near_y, s.near_z};
       }
+      corner = corner * mass;
+      turn = {turn.a * mass, turn.b * mass, turn.c * mass};
       of[0] = {corner.x, {turn.a.x, turn.b.x, turn.c.x}, {pull.a.x, pull.b.x, pull.c.x}, pulled.x};
       of[1] = {corner.y, {turn.a.y, turn.b.y, turn.c.y}, {pull.a.y, pull.b.y, pull.c.y}, pulled.y};
       of[2] = {corner.z, {turn.a.z, turn.b.z, turn.c.z}, {pull.a.z, pull.b.z, pull.c.z}, pulled.z};
@@ -142,14 +146,16 @@ struct ParticleToGrid {
   TALUS_HD static void add(const Source& s, int q, int t, Share& to) {
     const Weight x = s.x[q % width], y = s.y[q / width];
     const Component& own = s.of[t];
-    const Real weight = x.value * y.value, carried = weight * s.mass, step = carried * own.turn[2];
+    const Real weight = x.value * y.value, step = weight * own.turn[2];
     // -V tau . grad N is linear in the weights' slopes.
     const Real sideways = own.pull[0] * (x.slope * y.value) + own.pull[1] * (x.value * y.slope) + own.pulled * weight,
                upwards = own.pull[2] * weight;
-    Real momentum = carried * (own.corner + own.turn[0] * Real(q % width) + own.turn[1] * Real(q / width));
+    Real momentum = weight * (own.corner + own.turn[0] * Real(q % width) + own.turn[1] * Real(q / width));
     TALUS_UNROLL
     for (int c = 0; c < deep; ++c) {
-      const Weight z = s.z[c];
+      const Weight z = c == 0          ? s.low
+                       : c + 1 == deep ? s.high
+                                       : Weight{Real(1) - s.low.value - s.high.value, -s.low.slope - s.high.slope};
       to.momentum[c] += momentum * z.value;
       momentum += step;
       if constexpr (what != Scatter::momentum) {
@@ -158,10 +164,9 @@ struct ParticleToGrid {
         force += upwards * z.slope;
       }
     }
-    to.mass += carried * s.z[t < deep ? t : 0].value;
+    to.mass += weight * s.layers[t < deep ? t : 0];
     // Slopes grow from one layer to the next: the lowest and the highest bound those of two springs.
-    if constexpr (what == Scatter::springs)
-      to.spring += s.stiffness * weight * (t == 0 ? -s.z[0].slope : s.z[deep - 1].slope);
+    if constexpr (what == Scatter::springs) to.spring += s.stiffness * weight * (t == 0 ? -s.low.slope : s.high.slope);
   }
 
   /// The method calls give(number, sum) for share t of the vectors of node c of its column, stored as node n.
