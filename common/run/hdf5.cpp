@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "common/error.hpp"
+#include "common/run/packing.hpp"
 #include "common/run/run_file.hpp"
 #include "common/stage/files.hpp"
 
@@ -96,11 +97,14 @@ File File::open(const std::filesystem::path& path, Naming naming) {
   return file;
 }
 
+File::File(hid_t id, Naming naming, bool writing) : id_(id), naming_(std::move(naming)), writing_(writing) {}
+
 File::File(File&& other) noexcept
     : id_(std::exchange(other.id_, hid_t{-1})),
       naming_(std::move(other.naming_)),
       writing_(other.writing_),
       growing_(std::exchange(other.growing_, {})),
+      packing_(std::move(other.packing_)),
       plain_(other.plain_) {}
 
 File::~File() {
@@ -109,12 +113,11 @@ File::~File() {
 }
 
 void File::close() {
+  for (auto& [path, growing] : growing_) store(path, growing, growing.rows_waiting);
+  write_packed(true);
   while (!growing_.empty()) {
     const auto node = growing_.extract(growing_.begin());
-    Growing& last = node.mapped();
-    Id set(last.set, H5Dclose);
-    store(node.key(), last, last.rows_waiting);
-    if (!set.close()) fail(node.key());
+    if (H5Dclose(node.mapped().set) < 0) fail(node.key());
   }
   if (H5Fflush(id_, H5F_SCOPE_LOCAL) < 0) fail("the end of the file");
   if (H5Fclose(std::exchange(id_, hid_t{-1})) >= 0) return;

@@ -73,6 +73,7 @@ inline constexpr Allowed a_volume{.low = 0, .high = limits::volume};
 inline constexpr Allowed a_time{.low = 0, .high = limits::time};
 
 class File;
+class PackingQueue;
 /// Refuses the file where a value of dataset `path` is not allowed.
 template <class T>
 void check_values(const File& file, const std::string& path, std::span<const T> values, const Allowed& allowed);
@@ -184,7 +185,7 @@ class File {
     check_values<T>(*this, path, values, allowed);
     return values;
   }
-  File(hid_t id, Naming naming, bool writing) : id_(id), naming_(std::move(naming)), writing_(writing) {}
+  File(hid_t id, Naming naming, bool writing);
   void set_attribute(const std::string& object, const std::string& name, hid_t space, hid_t in_file, hid_t in_memory,
                      const void* data);
   void write_raw(const std::string& path, const Dims& dims, hid_t type, const void* data, std::size_t count);
@@ -200,6 +201,7 @@ class File {
   };
   Growing create_extendible(const std::string& path, hsize_t rows, const Dims& row, hid_t type);
   void store(const std::string& path, Growing& growing, hsize_t rows);
+  void write_packed(bool all);  // chunks that have been packed, or all once they are
   std::size_t checked_count(const std::string& path, const Dims& expected, hid_t type) const;
   std::size_t checked_rows(const std::string& path, hsize_t first, hsize_t rows, const Dims& row, hid_t type) const;
   [[noreturn]] void refuse_shape(const std::string& path, const Dims& found, const std::string& why) const;
@@ -211,6 +213,7 @@ class File {
   Naming naming_;
   bool writing_;
   std::map<std::string, Growing> growing_;
+  std::unique_ptr<PackingQueue> packing_;  // of growing_
   bool plain_ = false;
 };
 

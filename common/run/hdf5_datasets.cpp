@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "common/deflate.hpp"
 #include "common/run/hdf5.hpp"
+#include "common/run/packing.hpp"
 
 namespace talus::h5 {
 namespace {
@@ -30,8 +30,6 @@ Dims chunk_of(const Dims& dims) {
   return chunk;
 }
 
-constexpr int effort = 1;  // of libdeflate: 4 takes twice as long for 2 % less
-
 /// Whether `list` names the filters that packed() applies: chunks of a list that lacks one would be read wrongly.
 bool set_compression(hid_t list, const Dims& chunk) {
   return H5Pset_chunk(list, static_cast<int>(chunk.size()), chunk.data()) >= 0 && H5Pset_shuffle(list) >= 0 &&
@@ -40,27 +38,6 @@ bool set_compression(hid_t list, const Dims& chunk) {
 
 std::size_t product(std::span<const hsize_t> dims) {
   return std::accumulate(dims.begin(), dims.end(), std::size_t{1}, std::multiplies<>());
-}
-
-/// A chunk as HDF5's filters store it: all first bytes of its values, all second ones, ..., deflated. What `values`
-/// lack of `bytes` are zeros.
-std::string packed(std::span<const char> values, std::size_t bytes, std::size_t width) {
-  std::string shuffled(bytes, '\0');
-  const std::size_t count = bytes / width;
-  for (std::size_t b = 0; b < width; ++b)
-    for (std::size_t n = 0; n < values.size() / width; ++n) shuffled[b * count + n] = values[n * width + b];
-  return deflated(shuffled, effort);
-}
-
-/// Takes a chunk apart: the bytes from `skip` on of what packed() was given. Returns false where it is damaged.
-bool unpacked(std::span<const char> stored, std::size_t bytes, std::size_t width, std::size_t skip,
-              std::span<char> values) {
-  std::string shuffled(bytes, '\0');
-  if (!inflate_to(shuffled, stored)) return false;
-  const std::size_t count = bytes / width, first = skip / width;
-  for (std::size_t n = 0; n < values.size() / width; ++n)
-    for (std::size_t b = 0; b < width; ++b) values[n * width + b] = shuffled[b * count + first + n];
-  return true;
 }
 
 /// The dimension of which a chunk has a part.
@@ -235,17 +212,35 @@ void File::append_raw(const std::string& path, hsize_t rows, const Dims& row, hi
   store(path, growing, growing.rows_waiting / growing.chunk[0] * growing.chunk[0]);
 }
 
-/// The method writes the first of the rows that wait.
+/// The method has the first of the rows that wait packed, and writes what is packed.
 void File::store(const std::string& path, Growing& growing, hsize_t rows) {
   if (rows == 0) return;
   Dims block = growing.shape;
   block[0] = rows;
   const hsize_t first = std::exchange(growing.shape[0], growing.shape[0] + rows);
-  if (H5Dset_extent(growing.set, growing.shape.data()) < 0 ||
-      !write_chunks(growing.set, first, block, growing.chunk, growing.width, growing.waiting.data()))
-    fail(path);
+  if (H5Dset_extent(growing.set, growing.shape.data()) < 0) fail(path);
+  const Pieces pieces(first, block, growing.chunk, growing.width);
+  if (!packing_) packing_ = std::make_unique<PackingQueue>();
+  for (std::size_t c = 0; c < pieces.count(); ++c) {
+    Pieces::Piece piece = pieces[c];
+    packing_->add({.path = path,
+                   .set = growing.set,
+                   .offset = std::move(piece.offset),
+                   .values = growing.waiting.substr(piece.at, piece.bytes),
+                   .bytes = pieces.chunk_bytes(),
+                   .width = growing.width});
+  }
   growing.waiting.erase(0, product(block) * growing.width);
   growing.rows_waiting -= rows;
+  write_packed(false);
+}
+
+void File::write_packed(bool all) {
+  if (!packing_) return;
+  packing_->write(all, [&](const PackingChunk& chunk) {
+    if (H5Dwrite_chunk(chunk.set, H5P_DEFAULT, 0, chunk.offset.data(), chunk.stored.size(), chunk.stored.data()) < 0)
+      fail(chunk.path);
+  });
 }
 
 Dims File::dims(const std::string& path) const {
