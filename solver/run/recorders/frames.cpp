@@ -64,16 +64,18 @@ void FrameRecorder::put(double time, Solver& solver) {
   if (!run_) run_ = std::make_unique<RunWriter>(file_);
   ParticleState points = spare_state();
   if (shown != FramePoints::none) solver.show(points);
-  writing_.start([this, time, shown, thickness = solver.thickness(), state = std::move(points)]() mutable {
-    PointFrame frame = point_frame(scene_, options_, time, state);
-    {
-      const std::lock_guard lock(spare_guard_);
-      spare_.push_back(std::move(state));
-    }
-    if (shown == FramePoints::rounded) round(frame, scene_.grid);
-    if (!frame.id.empty()) run_->append(frame);
+  const auto frame = std::make_shared<PointFrame>();
+  auto make = [this, time, shown, frame, state = std::move(points)]() mutable {
+    *frame = point_frame(scene_, options_, time, state);
+    if (shown == FramePoints::rounded) round(*frame, scene_.grid);
+    const std::lock_guard lock(spare_guard_);
+    spare_.push_back(std::move(state));
+  };
+  auto write = [this, time, frame, thickness = solver.thickness()] {
+    if (!frame->id.empty()) run_->append(*frame);
     run_->append_thickness(time, scene_.map, thickness);
-  });
+  };
+  writing_.start(std::move(write), std::move(make));
 }
 
 ParticleState FrameRecorder::spare_state() {

@@ -20,18 +20,20 @@
 
 namespace talus::solver {
 
-/// Work beside the run, in order; few pieces wait at a time, since each holds a copy of the points.
+/// Work beside the run; few pieces wait at a time, since each holds a copy of the points.
 class SideWork {
  public:
-  /// The method has `work` done after the pieces before; it throws what one of them threw, which ends them all.
-  void start(std::function<void()> work) {
+  /// The method has `work` done after the pieces before, and ahead of it, beside them, `alone`; it throws what one of
+  /// them threw, which ends them all.
+  void start(std::function<void()> work, std::function<void()> alone = {}) {
     constexpr std::size_t most = 3;
     while (pieces_.size() >= most) wait_for_first();
     const auto before = pieces_.empty() ? std::shared_future<void>() : pieces_.back();
-    auto piece = [before, work = std::move(work), &here = context()] {
-      if (before.valid()) before.get();
+    auto piece = [before, work = std::move(work), alone = std::move(alone), &here = context()] {
       const CrashStack room;
       const BindContext bind(here);
+      if (alone) alone();
+      if (before.valid()) before.get();
       work();
     };
     pieces_.push_back(std::async(std::launch::async, std::move(piece)).share());
