@@ -21,8 +21,7 @@ TALUS_HD LyingMatter<Real> matter_on_bed(const GridView<Real>& grid, const Nodes
 
 /// Whether a column `depth` [m] deep that leaves the ground at (i, j) with velocity v, drawn by gravity g [m/s2] alone,
 /// comes down again without having been half its depth above the ground (T12g). The ground's slopes along its way are
-/// taken every half a cell, for 32 cells; a GPU asks for those of several places at a time, which it would else wait
-/// for one after the other.
+/// taken every half a cell, for 32 cells.
 template <class Real>
 TALUS_HD bool hops_low(const GridView<Real>& grid, int i, int j, const Vec3<Real>& v, const Vec3<Real>& g, Real depth) {
   const Real sx = grid.slope_x[grid.column(i, j)], sy = grid.slope_y[grid.column(i, j)];
@@ -30,31 +29,22 @@ TALUS_HD bool hops_low(const GridView<Real>& grid, int i, int j, const Vec3<Real
   const Real most = depth / Real(2) * Real(sqrt(Real(1) + sx * sx + sy * sy));
   const Real pace = fabs(v.x) > fabs(v.y) ? Real(fabs(v.x)) : Real(fabs(v.y));
   const Real dt = grid.spacing / (Real(2) * pace);
-  constexpr int places = 64, at_once = TALUS_ON_CPU == 1 ? 1 : 8;
   Real gap = 0;  // vertical
-  for (int first = 0; first < places; first += at_once) {
-    Real opens[at_once];  // NaN out of the map
-    TALUS_UNROLL
-    for (int q = 0; q < at_once; ++q) {
-      const Real t = (Real(first + q) + Real(0.5)) * dt;
-      const Vec3<Real> now = v + g * t, way = (v + g * (t / Real(2))) * (t / grid.spacing);
-      const Real x = Real(i) + way.x, y = Real(j) + way.y;
-      const bool inside = x >= Real(0) && y >= Real(0) && x < Real(grid.columns - 1) && y < Real(grid.rows - 1);
-      const int a = inside ? static_cast<int>(x) : 0, b = inside ? static_cast<int>(y) : 0;
-      const Real right = x - Real(a), up = y - Real(b);
-      const auto at = [&](const Real* slope) {
-        const Real below = slope[grid.column(a, b)] * (Real(1) - right) + slope[grid.column(a + 1, b)] * right,
-                   above = slope[grid.column(a, b + 1)] * (Real(1) - right) + slope[grid.column(a + 1, b + 1)] * right;
-        return below * (Real(1) - up) + above * up;
-      };
-      opens[q] = inside ? dt * (now.z - now.x * at(grid.slope_x) - now.y * at(grid.slope_y)) : Real(NAN);
-    }
-    TALUS_UNROLL
-    for (int q = 0; q < at_once; ++q) {
-      gap += opens[q];
-      if (!(gap > Real(0))) return true;
-      if (gap > most) return false;
-    }
+  for (int n = 0; n < 64; ++n) {
+    const Real t = (Real(n) + Real(0.5)) * dt;
+    const Vec3<Real> now = v + g * t, way = (v + g * (t / Real(2))) * (t / grid.spacing);
+    const Real x = Real(i) + way.x, y = Real(j) + way.y;
+    if (!(x >= Real(0) && y >= Real(0) && x < Real(grid.columns - 1) && y < Real(grid.rows - 1))) return true;
+    const int a = static_cast<int>(x), b = static_cast<int>(y);
+    const Real right = x - Real(a), up = y - Real(b);
+    const auto at = [&](const Real* slope) {
+      const Real below = slope[grid.column(a, b)] * (Real(1) - right) + slope[grid.column(a + 1, b)] * right,
+                 above = slope[grid.column(a, b + 1)] * (Real(1) - right) + slope[grid.column(a + 1, b + 1)] * right;
+      return below * (Real(1) - up) + above * up;
+    };
+    gap += dt * (now.z - now.x * at(grid.slope_x) - now.y * at(grid.slope_y));
+    if (!(gap > Real(0))) return true;
+    if (gap > most) return false;
   }
   return true;
 }
