@@ -131,8 +131,8 @@ struct ParticleToGrid {
   /// One thread: one point. It scatters alone, as on a CPU.
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
 
-  // The members that ScatterKernel (tiles.hpp) asks for.
-  /// The first node of a source; see ScatterKernel for this and the next members.
+  // The members that SharedScatter (tiles.hpp) asks for.
+  /// The first node of a source; see SharedScatter for this and the next members.
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
   TALUS_HD int column_of(const Source& s, int q) const {
     return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width);
