@@ -10,27 +10,60 @@
 
 namespace talus {
 
-/// Whether every component is below `limit`; below the limits in use the series converge to rounding of what they are
-/// used for (relative 1e-9).
+/// Whether every component is below `limit`.
 template <class Real>
 TALUS_HD bool is_small(const Sym3<Real>& s, Real limit) {
   return fabs(s.xx) < limit && fabs(s.yy) < limit && fabs(s.zz) < limit && fabs(s.xy) < limit && fabs(s.yz) < limit &&
          fabs(s.xz) < limit;
 }
 
+/// The coefficients of a power series from the first power on: of exp(x), or of ln(1 + x) / 2.
+template <std::size_t terms>
+struct Coefficients {
+  double of[terms];
+  static constexpr Coefficients of_exponential() {
+    Coefficients c{};
+    double factorial = 1;
+    for (std::size_t n = 0; n < terms; ++n) c.of[n] = 1 / (factorial *= static_cast<double>(n + 1));
+    return c;
+  }
+  static constexpr Coefficients of_half_logarithm() {
+    Coefficients c{};
+    for (std::size_t n = 0; n < terms; ++n) c.of[n] = (n % 2 == 0 ? 0.5 : -0.5) / static_cast<double>(n + 1);
+    return c;
+  }
+};
+
+/// The sum of c_n a^n from n = 1 on, by Horner's rule on q0 I + q1 a + q2 a^2: a^3 is a sum of these three (Cayley &
+/// Hamilton; Higham 2008, section 1.2), so that a power more takes three products of numbers.
+template <std::size_t terms, class Real>
+TALUS_HD Sym3<Real> power_series(const Sym3<Real>& a, const Coefficients<terms>& c) {
+  const Sym3<Real> a2 = commuting_product(a, a);
+  const Real first = trace(a), second = Real(0.5) * (first * first - trace(a2)),
+             third = a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
+                     a.xz * (a.xy * a.yz - a.yy * a.xz);
+  Real q0 = Real(c.of[terms - 1]), q1 = 0, q2 = 0;
+  TALUS_UNROLL
+  for (std::size_t n = terms - 1; n < terms; --n) {
+    const Real cubed = q2;
+    q2 = q1 + cubed * first;
+    q1 = q0 - cubed * second;
+    q0 = (n > 0 ? Real(c.of[n - 1]) : Real(0)) + cubed * third;
+  }
+  return (a * q1 + a2 * q2).plus_identity(q0);
+}
+
 /// The deviation exp(2 strain) - I, without cancellation: the series of a strain halved often enough, squared as often.
 template <class Real>
 TALUS_HD Sym3<Real> stretch_deviation(const Sym3<Real>& strain) {
+  constexpr auto series = Coefficients<10>::of_exponential();
   int halvings = 0;
   Real part = Real(2);
-  while (halvings < 12 && !is_small(strain * part, Real(0.01))) {
+  while (halvings < 12 && !is_small(strain * part, Real(0.1))) {
     part *= Real(0.5);
     ++halvings;
   }
-  const Sym3<Real> a = strain * part;
-  const Sym3<Real> a2 = commuting_product(a, a), a3 = commuting_product(a2, a), a4 = commuting_product(a2, a2);
-  const Sym3<Real> a5 = commuting_product(a4, a);
-  Sym3<Real> d = a + a2 * Real(1.0 / 2) + a3 * Real(1.0 / 6) + a4 * Real(1.0 / 24) + a5 * Real(1.0 / 120);
+  Sym3<Real> d = power_series(strain * part, series);
   for (; halvings > 0; --halvings) d = d * Real(2) + commuting_product(d, d);  // (I + d)^2 - I
   return d;
 }
@@ -45,25 +78,15 @@ TALUS_RARE Sym3<Real> large_hencky_strain(const Sym3<Real> deviation) {
   return compose(values, directions);
 }
 
-/// The strain ln(I + deviation) / 2. Strains of some percent, which soft grains carry, are found by the series of
-/// artanh z, z = deviation (2 I + deviation)^-1 (Gregory's; Higham 2008, chapter 11): its rest is 1e-11 of the strain
-/// at the limit, and it takes a tenth of the work of eigenvalues.
+/// The strain ln(I + deviation) / 2: by its series (Mercator's) up to strains of some percent, which soft grains carry.
+/// Its rest is 1e-11 of the strain at the limit, where no eigenvalue is over 0.3.
 template <class Real>
 TALUS_HD Sym3<Real> hencky_strain(const Sym3<Real>& deviation) {
-  const Sym3<Real>& b = deviation;
-  if (is_small(b, Real(0.01))) {
-    const Sym3<Real> b2 = commuting_product(b, b), b3 = commuting_product(b2, b), b4 = commuting_product(b2, b2);
-    const Sym3<Real> b5 = commuting_product(b4, b);
-    return b * Real(0.5) + b2 * Real(-1.0 / 4) + b3 * Real(1.0 / 6) + b4 * Real(-1.0 / 8) + b5 * Real(1.0 / 10);
-  }
-  if (!is_small(b, Real(0.1))) return large_hencky_strain(b);
-  const Sym3<Real> z = commuting_product(b, inverted(b.plus_identity(Real(2)))), z2 = commuting_product(z, z);
-  Sym3<Real> rest = (z2 * Real(1.0 / 13)).plus_identity(Real(1.0 / 11));
-  rest = commuting_product(rest, z2).plus_identity(Real(1.0 / 9));
-  rest = commuting_product(rest, z2).plus_identity(Real(1.0 / 7));
-  rest = commuting_product(rest, z2).plus_identity(Real(1.0 / 5));
-  rest = commuting_product(rest, z2).plus_identity(Real(1.0 / 3));
-  return z + commuting_product(z, commuting_product(rest, z2));
+  constexpr auto few = Coefficients<7>::of_half_logarithm();
+  constexpr auto many = Coefficients<18>::of_half_logarithm();
+  if (is_small(deviation, Real(0.01))) return power_series(deviation, few);
+  if (is_small(deviation, Real(0.1))) return power_series(deviation, many);
+  return large_hencky_strain(deviation);
 }
 
 /// The deviation of the left Cauchy-Green tensor after the displacement gradient `g` of the step: b' = (I + g) b (I +
