@@ -76,7 +76,8 @@ template <class Real, class Number>
 TALUS_HD Number mass_beside(const GridView<Real>& grid, const Number* mass, int i, int j, int dx, int dy) {
   const int a = mirrored(i + dx, grid.walls.x), b = mirrored(j + dy, grid.walls.y);
   if (a < 0 || b < 0 || a >= grid.columns || b >= grid.rows || grid.slot(a, b).layers == 0) return Number(0);
-  return mass[grid.column(a, b)] / static_cast<Number>(share_before_walls(grid, a, b));
+  const Number found = mass[grid.column(a, b)], share = static_cast<Number>(share_before_walls(grid, a, b));
+  return share < Number(1) ? found / share : found;  // most columns are whole, and divisions slow
 }
 
 /// What a line of columns from outside the mass (the first) inwards tells of how much of the second's bed is covered:
@@ -108,8 +109,11 @@ TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int
   const Number own = mass_beside(grid, mass, i, j, 0, 0);
   Number heaviest = own, inside = -1;
   int in_x = 0, in_y = 0;
+  TALUS_ROLL
   for (int dy = -1; dy <= 1; ++dy) {
+    TALUS_ROLL
     for (int dx = -1; dx <= 1; ++dx) {
+      TALUS_ROLL
       for (int apart = 1; apart <= 2; ++apart) {
         const Number beside = mass_beside(grid, mass, i, j, apart * dx, apart * dy);
         at_edge = at_edge || !(beside > Number(0));
@@ -125,6 +129,7 @@ TALUS_HD Number cover(const GridView<Real>& grid, const Number* mass, int i, int
   const Number as_wall = own / heaviest;
   if (rim == Rim::wall) return as_wall;
   Number line[5];
+  TALUS_ROLL
   for (int k = 0; k < 5; ++k) line[k] = mass_beside(grid, mass, i, j, (k - 1) * in_x, (k - 1) * in_y);
   return cover_at_edge(line, as_wall);
 }

@@ -22,7 +22,9 @@
 #if defined(__CUDA_ARCH__)
 #define TALUS_ON_CPU 0  // for which device a function of both is being compiled
 #define TALUS_UNROLL _Pragma("unroll")
+#define TALUS_ROLL _Pragma("unroll 1")  // where fetching the instructions takes longer than a loop
 #else
 #define TALUS_ON_CPU 1
 #define TALUS_UNROLL
+#define TALUS_ROLL
 #endif
