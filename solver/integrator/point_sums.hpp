@@ -133,7 +133,9 @@ struct ScatterMotion {
     sums[0].mass += share;
     sums[0].momentum += s.velocity * share;
   }
-  TALUS_HD void add_to_node(int n, const Sums& sums) const { scatter_add(&motion[n], sums.mass, sums.momentum); }
+  TALUS_HD void add_to_node(int n, const Sums& sums) const {
+    scatter_add(&motion[n], Four<Real>(sums.mass, sums.momentum));
+  }
   TALUS_HD static void store(const Sums& sums, Real* to) {
     to[0] = sums.mass;
     to[1] = sums.momentum.x;

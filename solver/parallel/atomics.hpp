@@ -137,17 +137,24 @@ TALUS_HD void scatter_add(Vec3<Real>* target, const Vec3<Real>& v) {
 
 /// This function adds to a node's mass and momentum at once, in the same way.
 template <class Real>
-TALUS_HD void scatter_add(Vec4<Real>* target, Real w, const Vec3<Real>& v) {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+TALUS_HD void scatter_add(Vec4<Real>* target, const Four<Real>& v) {
+#if defined(__CUDA_ARCH__)
+  const Vec3<Real> xyz = v.xyz();
+#if __CUDA_ARCH__ >= 900
   if constexpr (sizeof(Real) == 4) {  // one 16-byte atomic instead of four
-    atomicAdd(reinterpret_cast<float4*>(target), make_float4(w, v.x, v.y, v.z));
+    atomicAdd(reinterpret_cast<float4*>(target), make_float4(v.w(), xyz.x, xyz.y, xyz.z));
     return;
   }
 #endif
-  scatter_add(&target->w, w);
-  scatter_add(&target->x, v.x);
-  scatter_add(&target->y, v.y);
-  scatter_add(&target->z, v.z);
+  scatter_add(&target->w, v.w());
+  scatter_add(&target->x, xyz.x);
+  scatter_add(&target->y, xyz.y);
+  scatter_add(&target->z, xyz.z);
+#else
+  Four<Real> sum(*target);
+  sum += v;
+  sum.store(*target);
+#endif
 }
 
 /// This function brings a value near to a GPU's multiprocessor, ahead of its use.

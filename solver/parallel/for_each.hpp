@@ -96,10 +96,10 @@ void run_range(Kernel kernel, int begin, int end) {
   for (int i = begin; i < end; ++i) kernel(i);
 }
 
-/// The same with all that it calls inlined, as on a GPU, for a kernel that says it is `hot`: most are as fast without,
-/// and compile faster.
+/// The same for a kernel that says it is `hot`, with all that it calls inlined, as on a GPU, and for each kind of CPU:
+/// most kernels are as fast without, and compile faster.
 template <class Kernel>
-requires Kernel::hot __attribute__((flatten)) void run_range(Kernel kernel, int begin, int end) {
+requires Kernel::hot __attribute__((flatten, TALUS_FOR_EACH_CPU)) void run_range(Kernel kernel, int begin, int end) {
   for (int i = begin; i < end; ++i) kernel(i);
 }
 

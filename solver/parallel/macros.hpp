@@ -28,3 +28,10 @@
 #define TALUS_UNROLL
 #define TALUS_ROLL
 #endif
+
+// Compiled once for any x86-64 and once for one with AVX2 and FMA, which runs where the processor has them.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TALUS_FOR_EACH_CPU target_clones("arch=x86-64-v3", "default")
+#else
+#define TALUS_FOR_EACH_CPU
+#endif

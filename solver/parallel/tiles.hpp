@@ -57,24 +57,11 @@ concept ScatterKernel = std::is_constructible_v<typename Kernel::Source, const K
 ///   add(s, q, t, share)                 adds share t of what the nodes of column q receive from s
 ///   give_vectors(share, t, c, n, give)  calls give(number, sum) for share t of the vectors of node c, stored as node n
 ///   give_scalars(share, t, n, give)     the same for the scalars, of node t
-///   add_to_node(n, c, shares)           adds all shares of node c to stored node n, whoever else does
+/// On a CPU it scatters a point alone, as it sees fit.
 template <class Kernel>
 concept SharedScatter = requires {
   typename Kernel::Share;
 };
-
-template <SharedScatter Kernel>
-TALUS_HD void scatter_point(const Kernel& kernel, int p) {
-  if (!kernel.counts(p)) return;
-  const typename Kernel::Source source(kernel, p);
-  for (int q = 0; q < Kernel::columns_each; ++q) {
-    typename Kernel::Share shares[Kernel::shares];
-    for (int t = 0; t < Kernel::shares; ++t) kernel.add(source, q, t, shares[t]);
-    const int column = kernel.column_of(source, q);
-    for (int c = 0; c < Kernel::deep; ++c)
-      kernel.add_to_node(kernel.node_in(column, kernel.nodes_of(source).k, c), c, shares);
-  }
-}
 
 /// This function does a scatter's work for one point, alone.
 template <ScatterKernel Kernel>

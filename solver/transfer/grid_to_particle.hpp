@@ -129,7 +129,7 @@ struct GridToParticle {
   TALUS_HD Sums gather(const Stencil<Real, Shape>& s) const {
     // A CPU tests flags at each of the nodes; the usual ones have a copy of the loop without.
     if constexpr (TALUS_ON_CPU == 1) {
-      if (affine && by_layers && changes && grid.mapping == Mapping::terrain_following) return sum_up<true>(s);
+      if (affine && changes && grid.mapping == Mapping::terrain_following) return sum_up<true>(s);
     }
     return sum_up<false>(s);
   }
@@ -137,6 +137,7 @@ struct GridToParticle {
   template <bool usual>
   TALUS_HD Sums sum_up(const Stencil<Real, Shape>& s) const {
     Sums sums;
+    Four<Real> velocity, change, by_x, by_y, by_z, lever_x, lever_y, lever_z;
     const bool follows = usual || grid.mapping == Mapping::terrain_following, with_affine = usual || affine,
                has_changes = usual || changes;
     TALUS_UNROLL  // weights looked up by a loop's counter would go through memory
@@ -146,38 +147,37 @@ struct GridToParticle {
         const int i = s.i + a, j = s.j + b, column = s.column(grid, a, b);
         const Real nx = follows ? grid.slope_x[grid.column(i, j)] : Real(0),
                    ny = follows ? grid.slope_y[grid.column(i, j)] : Real(0);
-        Vec3<Real> mean{}, rise{}, lever{}, change{};  // of the column, weighed once
-        Real mass = 0;
+        Four<Real> mean, rise, lever, changed;  // of the column, weighed once
         TALUS_UNROLL
         for (int c = 0; c < Shape::width; ++c) {
           const int n = s.node(column, c);
-          const Vec4<Real> node = nodes[n];
-          const Vec3<Real> v{node.x, node.y, node.z};
-          mean += v * s.wz[c];
-          rise += v * s.gz[c];
-          if (with_affine) lever += v * (s.wz[c] * (s.near_z + Real(c)));
-          mass += node.w * s.wz[c];
-          if (has_changes) {
-            const Vec4<Real> d = changes[n];
-            change += Vec3<Real>{d.x, d.y, d.z} * s.wz[c];
-          }
+          const Four<Real> node(nodes[n]);
+          mean += node * s.wz[c];
+          rise += node * s.gz[c];
+          if (with_affine) lever += node * (s.wz[c] * (s.near_z + Real(c)));
+          if (has_changes) changed += Four<Real>(changes[n]) * s.wz[c];
         }
         const Real w = s.wx[a] * s.wy[b];
-        if constexpr (!by_layers) sums.company.add(mass, s.wx[a], s.wy[b]);
-        sums.velocity += mean * w;
-        sums.change += change * w;
-        sums.climb += (mean.z - nx * mean.x - ny * mean.y) * w;
+        const Vec3<Real> v = mean.xyz();
+        if constexpr (!by_layers) sums.company.add(mean.w(), s.wx[a], s.wy[b]);
+        velocity += mean * w;
+        change += changed * w;
+        sums.climb += (v.z - nx * v.x - ny * v.y) * w;
         if (follows) sums.bend += bend_of(nx, ny, s.gx[a] * s.wy[b], s.wx[a] * s.gy[b]);
-        sums.gradient.a += mean * (s.gx[a] * s.wy[b]);
-        sums.gradient.b += mean * (s.wx[a] * s.gy[b]);
-        sums.gradient.c += rise * w;
+        by_x += mean * (s.gx[a] * s.wy[b]);
+        by_y += mean * (s.wx[a] * s.gy[b]);
+        by_z += rise * w;
         if (with_affine) {
-          sums.moment.a += mean * (w * (s.near_x + Real(a)));
-          sums.moment.b += mean * (w * (s.near_y + Real(b)));
-          sums.moment.c += lever * w;
+          lever_x += mean * (w * (s.near_x + Real(a)));
+          lever_y += mean * (w * (s.near_y + Real(b)));
+          lever_z += lever * w;
         }
       }
     }
+    sums.velocity = velocity.xyz();
+    sums.change = change.xyz();
+    sums.gradient = {by_x.xyz(), by_y.xyz(), by_z.xyz()};
+    sums.moment = {lever_x.xyz(), lever_y.xyz(), lever_z.xyz()};
     return sums;
   }
 

@@ -47,28 +47,30 @@ struct ParticleToGrid {
   struct alignas(2 * sizeof(Real)) Weight {
     Real value, slope;
   };
-  /// One component of what a point gives.
+  /// One component of what a point gives, or all at once as Four<Real>, with the mass as first of them.
+  template <class Number>
   struct alignas(2 * sizeof(Real)) Component {
-    Real corner;        ///< of the momentum that the whole mass would have at the first node
-    Real turn[3] = {};  ///< its change per node
-    Real pull[3] = {};  ///< of -V tau, mapped to reference coordinates and per cell
-    Real pulled = 0;    ///< by the point's load, in the units of `pull`
+    Number corner;   ///< of the momentum that the whole mass would have at the first node
+    Number turn[3];  ///< its change per node
+    Number pull[3];  ///< of -V tau, mapped to reference coordinates and per cell
+    Number pulled;   ///< by the point's load, in the units of `pull`
   };
   /// A point as its nodes see it: the part of its stencil that they need. It is as small as can be, and a lane reads as
   /// little of it as can be, two numbers at a time: that decides how many points a GPU holds, and how long it takes.
-  struct alignas(2 * sizeof(Real)) Source {
+  template <class Number>
+  struct alignas(2 * sizeof(Real)) SourceOf {
     static constexpr std::size_t wide = Shape::width;
     Weight x[wide], y[wide], low, high;  ///< across the layers the first and the last; all sum to one, slopes to zero
-    Component of[3];
+    Component<Number> of[std::is_same_v<Number, Real> ? 3 : 1];
     Real layers[wide];   ///< mass by the weights across the layers [kg]
     Real stiffness = 0;  ///< of the springs between its layers, for a slope of one per cell [N/m]
     int i, j, k;
 
-    TALUS_HD Source(const ParticleToGrid& kernel, int p)
-        : Source(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
+    TALUS_HD SourceOf(const ParticleToGrid& kernel, int p)
+        : SourceOf(kernel, p, Stencil<Real, Shape>(kernel.grid, kernel.points, p)) {}
 
    private:
-    TALUS_HD Source(const ParticleToGrid& kernel, int p, const Stencil<Real, Shape>& s) : i(s.i), j(s.j), k(s.k) {
+    TALUS_HD SourceOf(const ParticleToGrid& kernel, int p, const Stencil<Real, Shape>& s) : i(s.i), j(s.j), k(s.k) {
       TALUS_UNROLL
       for (int a = 0; a < width; ++a) {
         x[a] = {s.wx[a], s.gx[a]};
@@ -106,11 +108,24 @@ struct ParticleToGrid {
       }
       corner = corner * mass;
       turn = {turn.a * mass, turn.b * mass, turn.c * mass};
-      of[0] = {corner.x, {turn.a.x, turn.b.x, turn.c.x}, {pull.a.x, pull.b.x, pull.c.x}, pulled.x};
-      of[1] = {corner.y, {turn.a.y, turn.b.y, turn.c.y}, {pull.a.y, pull.b.y, pull.c.y}, pulled.y};
-      of[2] = {corner.z, {turn.a.z, turn.b.z, turn.c.z}, {pull.a.z, pull.b.z, pull.c.z}, pulled.z};
+      if constexpr (std::is_same_v<Number, Real>) {
+        of[0] = {corner.x, {turn.a.x, turn.b.x, turn.c.x}, {pull.a.x, pull.b.x, pull.c.x}, pulled.x};
+        of[1] = {corner.y, {turn.a.y, turn.b.y, turn.c.y}, {pull.a.y, pull.b.y, pull.c.y}, pulled.y};
+        of[2] = {corner.z, {turn.a.z, turn.b.z, turn.c.z}, {pull.a.z, pull.b.z, pull.c.z}, pulled.z};
+      } else {
+        Component<Number>& all_three = of[0];  // set one by one: GCC copies a whole one through memory
+        all_three.corner = Number(mass, corner);
+        all_three.turn[0] = Number(0, turn.a);
+        all_three.turn[1] = Number(0, turn.b);
+        all_three.turn[2] = Number(0, turn.c);
+        all_three.pull[0] = Number(0, pull.a);
+        all_three.pull[1] = Number(0, pull.b);
+        all_three.pull[2] = Number(0, pull.c);
+        all_three.pulled = Number(0, pulled);
+      }
     }
   };
+  using Source = SourceOf<Real>;
 
   /// The stiffness of point p across its layers (T6b) [N/m].
   TALUS_HD static Real stiffness_of(const ParticleToGrid& kernel, int p, const Stencil<Real, Shape>& s,
@@ -122,19 +137,37 @@ struct ParticleToGrid {
   }
 
   /// A third of what the nodes of a column receive: a component of momentum [kg m/s] and force [N] of all of them, or
-  /// of impulse [N s] as part of the momentum, and mass [kg] and the spring to the node above [N/m] of one of them.
-  struct Share {
+  /// of impulse [N s] as part of the momentum, and mass [kg] and the spring to the node above [N/m] of one of them. As
+  /// Four<Real> all components, the mass with the momentum and the spring with the force.
+  template <class Number>
+  struct ShareOf {
     static constexpr auto each = static_cast<std::size_t>(deep);
-    Real mass = 0, spring = 0, momentum[each] = {}, force[each] = {};
+    Real mass = 0, spring = 0;
+    Number momentum[each]{}, force[each]{};
   };
+  using Share = ShareOf<Real>;
 
-  /// One thread: one point. It scatters alone, as on a CPU.
-  TALUS_HD void operator()(int p) const { scatter_point(*this, p); }
+  /// A CPU's thread: one point, all its components at once.
+  TALUS_HD void operator()(int p) const {
+    if (!counts(p)) return;
+    const SourceOf<Four<Real>> source(*this, p);
+    for (int q = 0; q < columns_each; ++q) {
+      ShareOf<Four<Real>> whole;
+      add(source, q, 0, whole);
+      const int column = column_of(source, q);
+      for (int c = 0; c < deep; ++c) {
+        const int n = node_in(column, source.k, c);
+        scatter_add(&nodes[n], whole.momentum[c]);
+        if constexpr (forces_apart(what)) scatter_add(&forces[n], whole.force[c]);
+      }
+    }
+  }
 
   // The members that SharedScatter (tiles.hpp) asks for.
   /// The first node of a source; see SharedScatter for this and the next members.
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
-  TALUS_HD int column_of(const Source& s, int q) const {
+  template <class Number>
+  TALUS_HD int column_of(const SourceOf<Number>& s, int q) const {
     return Stencil<Real, Shape>::column_at(grid, s.i + q % width, s.j + q / width);
   }
   TALUS_HD static int node_in(int column, int k, int c) { return Stencil<Real, Shape>::node(column, k, c); }
@@ -143,14 +176,16 @@ struct ParticleToGrid {
   TALUS_HD bool counts(int p) const { return clock->alarms.halt == running && points.cell[0][p] >= 0; }
 
   /// Share t of what the nodes of column q receive: mass (T3), momentum (T4) and force (T5).
-  TALUS_HD static void add(const Source& s, int q, int t, Share& to) {
+  template <class Number>
+  TALUS_HD static void add(const SourceOf<Number>& s, int q, int t, ShareOf<Number>& to) {
     const Weight x = s.x[q % width], y = s.y[q / width];
-    const Component& own = s.of[t];
-    const Real weight = x.value * y.value, step = weight * own.turn[2];
+    const Component<Number>& own = s.of[t];
+    const Real weight = x.value * y.value;
+    const Number step = own.turn[2] * weight;
     // -V tau . grad N is linear in the weights' slopes.
-    const Real sideways = own.pull[0] * (x.slope * y.value) + own.pull[1] * (x.value * y.slope) + own.pulled * weight,
-               upwards = own.pull[2] * weight;
-    Real momentum = weight * (own.corner + own.turn[0] * Real(q % width) + own.turn[1] * Real(q / width));
+    const Number sideways = own.pull[0] * (x.slope * y.value) + own.pull[1] * (x.value * y.slope) + own.pulled * weight,
+                 upwards = own.pull[2] * weight;
+    Number momentum = (own.corner + own.turn[0] * Real(q % width) + own.turn[1] * Real(q / width)) * weight;
     TALUS_UNROLL
     for (int c = 0; c < deep; ++c) {
       const Weight z = c == 0          ? s.low
@@ -159,14 +194,19 @@ struct ParticleToGrid {
       to.momentum[c] += momentum * z.value;
       momentum += step;
       if constexpr (what != Scatter::momentum) {
-        Real& force = forces_apart(what) ? to.force[c] : to.momentum[c];
+        Number& force = forces_apart(what) ? to.force[c] : to.momentum[c];
         force += sideways * z.value;
         force += upwards * z.slope;
       }
     }
-    to.mass += weight * s.layers[t < deep ? t : 0];
     // Slopes grow from one layer to the next: the lowest and the highest bound those of two springs.
-    if constexpr (what == Scatter::springs) to.spring += s.stiffness * weight * (t == 0 ? -s.low.slope : s.high.slope);
+    const auto spring = [&](int c) { return s.stiffness * weight * (c == 0 ? -s.low.slope : s.high.slope); };
+    if constexpr (std::is_same_v<Number, Real>) {
+      to.mass += weight * s.layers[t < deep ? t : 0];
+      if constexpr (what == Scatter::springs) to.spring += spring(t);
+    } else if constexpr (what == Scatter::springs) {
+      for (int c = 0; c + 1 < deep; ++c) to.force[c] += Number(spring(c), {});
+    }
   }
 
   /// The method calls give(number, sum) for share t of the vectors of node c of its column, stored as node n.
@@ -183,13 +223,6 @@ struct ParticleToGrid {
     if constexpr (what == Scatter::springs) {
       if (t + 1 < deep) give(&forces[n].w, s.spring);
     }
-  }
-
-  /// The method adds the shares of node c of a column to stored node n.
-  TALUS_HD void add_to_node(int n, int c, const Share (&s)[shares]) const {
-    scatter_add(&nodes[n], s[c].mass, {s[0].momentum[c], s[1].momentum[c], s[2].momentum[c]});
-    if constexpr (forces_apart(what))
-      scatter_add(&forces[n], c + 1 < deep ? s[c].spring : Real(0), {s[0].force[c], s[1].force[c], s[2].force[c]});
   }
 };
 

@@ -117,7 +117,7 @@ struct WaterToCells : WaterStep<Real> {
     sums[0].wet += Vec3<Real>{s.volume, s.volume * s.effective, s.volume * s.change} * share;
   }
   TALUS_HD void add_to_node(int n, const Sums& sums) const {
-    scatter_add(&cells[n], sums.weight, sums.wet);
+    scatter_add(&cells[n], Four<Real>(sums.weight, sums.wet));
     scatter_add(&moments[n], sums.moment);
   }
   TALUS_HD static void store(const Sums& sums, Real* to) {

@@ -148,7 +148,7 @@ TEST(Atomics, leave_what_is_already_as_large_or_as_small) {
 TEST(Atomics, scatter_mass_and_momentum_into_their_places) {
   Vec4<double> node{1, 2, 3, 4};
   const double w = node.w, x = node.x, y = node.y, z = node.z;
-  scatter_add(&node, 10.0, Vec3<double>{20, 30, 40});
+  scatter_add(&node, Four<double>(10, {20, 30, 40}));
   EXPECT_EQ(node.w, w + 10);
   expect_near(node, {x + 20, y + 30, z + 40}, 0);
 }
