@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstring>
 #include <type_traits>
 
 #include "solver/parallel/macros.hpp"
@@ -85,7 +84,6 @@ class Four {
   }
   TALUS_HD Four operator+(const Four& o) const { return {w_ + o.w_, xyz_ + o.xyz_}; }
   TALUS_HD Four operator*(Real s) const { return {w_ * s, xyz_ * s}; }
-  TALUS_HD void store(Vec4<Real>& to) const { to = {w_, xyz_.x, xyz_.y, xyz_.z}; }
   TALUS_HD Real w() const { return w_; }
   TALUS_HD Vec3<Real> xyz() const { return xyz_; }
 

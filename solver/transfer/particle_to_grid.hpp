@@ -113,15 +113,10 @@ struct ParticleToGrid {
         of[1] = {corner.y, {turn.a.y, turn.b.y, turn.c.y}, {pull.a.y, pull.b.y, pull.c.y}, pulled.y};
         of[2] = {corner.z, {turn.a.z, turn.b.z, turn.c.z}, {pull.a.z, pull.b.z, pull.c.z}, pulled.z};
       } else {
-        Component<Number>& all_three = of[0];  // set one by one: GCC copies a whole one through memory
-        all_three.corner = Number(mass, corner);
-        all_three.turn[0] = Number(0, turn.a);
-        all_three.turn[1] = Number(0, turn.b);
-        all_three.turn[2] = Number(0, turn.c);
-        all_three.pull[0] = Number(0, pull.a);
-        all_three.pull[1] = Number(0, pull.b);
-        all_three.pull[2] = Number(0, pull.c);
-        all_three.pulled = Number(0, pulled);
+        of[0] = {{mass, corner},
+                 {{0, turn.a}, {0, turn.b}, {0, turn.c}},
+                 {{0, pull.a}, {0, pull.b}, {0, pull.c}},
+                 {0, pulled}};
       }
     }
   };
