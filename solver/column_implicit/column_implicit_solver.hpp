@@ -15,7 +15,7 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape, false> {
   using Base = BatchSolver<Real, Device, Shape, false>;
-  using Base::clock_, Base::device_, Base::forces_, Base::grid_, Base::nodes_, Base::settings_;
+  using Base::clock_, Base::device_, Base::grid_, Base::settings_;
 
  public:
   ColumnImplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings,
@@ -33,9 +33,9 @@ class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape, false
                                      .active = grid_.active_list(),
                                      .clock = clock_.data(),
                                      .mobilities = mobilities_.data(),
-                                     .forces = forces_.data(),
+                                     .forces = this->forces(),
                                      .kappa = kappa()};
-    this->update(forces_.data(), ColumnInertia<Real, Device>(device_, solved, grid_.active_blocks()), [&] {
+    this->update(this->forces(), ColumnInertia<Real, Device>(device_, solved, grid_.active_blocks()), [&] {
       if (settings_.energy_budget) return solve_columns<true>();
       solve_columns<false>();
     });
@@ -44,7 +44,7 @@ class ColumnImplicitSolver final : public BatchSolver<Real, Device, Shape, false
   template <bool counts>
   void solve_columns() {
     for_each(device_, grid_.active_blocks() * block_columns,
-             SolveColumns<Real, counts>{this->boundary(forces_.data()), nodes_.data(), forces_.data(),
+             SolveColumns<Real, counts>{this->boundary(this->forces()), this->nodes(), this->forces(),
                                         mobilities_.data(), static_cast<Real>(settings_.damping), kappa(), softer_});
   }
 

@@ -193,6 +193,7 @@ struct SolveColumns {
       const int n = at.node(k);
       const Vec4<Real> node = next.node, f = next.force;
       next = stored(at, k - 1);
+      boundary.next.clear(n);
       Mobility<Real> own{};
       if (node.w > Real(0)) {
         const Real up = above.across > Real(0) ? at.inertia * f.w : Real(0), both = up + at.inertia * next.force.w;

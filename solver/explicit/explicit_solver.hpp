@@ -47,6 +47,7 @@ struct UpdateColumns {
   TALUS_HD void layer(const Column& at, int k, Sums& sums) const {
     const int n = at.node(k);
     const Vec4<Real> node = nodes[n];
+    boundary.next.clear(n);
     if (!(node.w > Real(0))) {
       if (k == at.rise_layer) boundary.columns.rise[at.column] = Real(off_bed);
       return;
@@ -103,7 +104,7 @@ namespace talus::solver {
 template <class Real, class Device, class Shape>
 class ExplicitSolver final : public BatchSolver<Real, Device, Shape, true> {
   using Base = BatchSolver<Real, Device, Shape, true>;
-  using Base::device_, Base::forces_, Base::grid_, Base::nodes_, Base::settings_;
+  using Base::device_, Base::grid_, Base::settings_;
 
  public:
   ExplicitSolver(const Device& device, const Scene& scene, const IntegratorSettings& settings, const SolverState& state)
@@ -116,7 +117,7 @@ class ExplicitSolver final : public BatchSolver<Real, Device, Shape, true> {
     const NodeInertia<Device> inertia(device_);
     if (!this->forces_apart())
       return this->update(nullptr, inertia, [&] { update_columns<NodeContent::impulse, false>(); });
-    this->update(forces_.data(), inertia, [&] {
+    this->update(this->forces(), inertia, [&] {
       settings_.energy_budget ? update_columns<NodeContent::force, true>()
                               : update_columns<NodeContent::force, false>();
     });
@@ -124,10 +125,10 @@ class ExplicitSolver final : public BatchSolver<Real, Device, Shape, true> {
 
   template <NodeContent content, bool counts>
   void update_columns() {
-    Vec4<Real>* const changes = content == NodeContent::force ? forces_.data() : nullptr;
+    Vec4<Real>* const changes = content == NodeContent::force ? this->forces() : nullptr;
     for_each_column<block_columns>(
         device_, grid_.active_blocks(),
-        UpdateColumns<Real, content, counts>{this->boundary(changes), nodes_.data(), forces_.data(),
+        UpdateColumns<Real, content, counts>{this->boundary(changes), this->nodes(), this->forces(),
                                              static_cast<Real>(settings_.damping)});
   }
 };

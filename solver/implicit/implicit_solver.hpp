@@ -181,10 +181,7 @@ class ImplicitSolver final : public PointSolver<Real, Device, Shape> {
 
   /// The method records speed and pressure of the points as they are, sorted.
   void record_points() {
-    if (!controls_.dynamic) return;
-    this->measure_columns();
-    this->sum_motion(nullptr);
-    this->record_motion();
+    if (controls_.dynamic) this->record_motion();
   }
 
   /// The method reports what the step ended with, and drops particles that left the domain.

@@ -74,20 +74,22 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   BatchReport advance() override {
     Clock clock = clock_.read();
     clock.alarms.halt = clock.alarms.request = running;
+    clock.steps_ahead = loads_.grow_at(clock.time) ? 1 : steps_ahead(clock);
     clock_.write(clock);
+    odd_ = !settings_.remaps_velocity() && clock.sorting.steps_since % 2 != 0;
     walls_ = this->template set_walls<Real>(clock.time);
     loads_now_ = loads_.upload(clock.time, clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     clock_.lend();
     clock_.pass_in();
-    start_steps(clock, loads_.grow_at(clock.time) ? 1 : steps_ahead(clock));
-    for_each(device_, 1, CloseBatch{clock_.data()});
+    for_each(device_, 1, open_step());
+    start_steps(clock);
     clock_.pass_out();
     BatchReport report;
     clock = clock_.read();
     int halt = clock.alarms.halt;
     this->measured_ = false;
-    if (halt == at_event) look_back(clock_.data());
+    if (halt == at_event) this->record_motion();
     if (halt == wants_sort) {
       expected_ = clock.sorting.steps_since;
       const int request = clock.alarms.request;
@@ -106,7 +108,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
       if (halt == wants_sort && clock.time >= clock.next_event) {
         clock.halt_where_due();
         halt = clock.alarms.halt;
-        look_back(nullptr);
+        this->record_motion();
       }
     }
     clock_.write(clock);
@@ -147,7 +149,11 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   virtual void resize_nodes(std::size_t) {}
   virtual void update_nodes() = 0;  ///< once the points are scattered
   /// The memory of the nodes [bytes].
-  virtual std::size_t node_bytes() const { return nodes_.bytes() + forces_.bytes(); }
+  virtual std::size_t node_bytes() const { return nodes_.bytes(); }
+  /// The nodes of the step that is being started, mass and momentum, then velocity; and the forces on them, then the
+  /// changes of velocity, null where they are not apart.
+  Vec4<Real>* nodes() { return at_nodes(odd_); }
+  Vec4<Real>* forces() { return forces_apart() ? at_nodes(odd_, true) : nullptr; }
   /// Whether forces are scattered apart from momentum.
   bool forces_apart() const {
     return !by_layers || settings_.remaps_velocity() || settings_.decay_time > 0 || settings_.damping > 0 ||
@@ -168,20 +174,22 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     this->meet_water();
   }
 
-  /// The method scatters the points' mass and momentum, with forces to their own array where it asks for them.
+  /// The method scatters the points' mass and momentum, with forces to their own array where it asks for them, and
+  /// their motion over the columns where that is due.
   template <Scatter what>
   void scatter() {
     const ProfilePhase<Device> phase(device_, "points to grid");
-    const auto run = [&]<class Laws>(const Materials<Real, Laws>& materials) {
-      scatter_points(
-          device_, points_.count(), grid_.groups(),
-          ParticleToGrid<Real, Shape, what, Laws>{grid_.view(), points_.view(), materials, clock_.data(), nodes_.data(),
-                                                  forces_.data(), loads_now_, settings_.affine(), dilatant_});
+    const auto kernel = [&]<class Laws>(const Materials<Real, Laws>& materials) {
+      return ParticleToGrid<Real, Shape, what, Laws>{grid_.view(), points_.view(), materials,  clock_.data(),
+                                                     nodes(),      forces(),       loads_now_, settings_.affine(),
+                                                     dilatant_};
     };
     if constexpr (what == Scatter::momentum) {
-      run(materials_);  // asks for no stress
+      scatter_points(device_, points_.count(), grid_.groups(), kernel(materials_));  // asks for no stress
     } else {
-      with_laws_of(materials_, run);
+      with_laws_of(materials_, [&](const auto& materials) {
+        scatter_points(device_, points_.count(), grid_.groups(), kernel(materials), this->sum_of_motion(clock_.data()));
+      });
     }
   }
 
@@ -190,9 +198,8 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   template <class Inertia, class UpdateNodes>
   void update(Vec4<Real>* changes, const Inertia& inertia, const UpdateNodes& update_nodes) {
     const StepNodes<Real> at = step_nodes(changes);
-    if (flows_) this->flow_water(this->gravity(), loads_now_, nodes_.data());
+    if (flows_) this->flow_water(this->gravity(), loads_now_, nodes());
     this->measure_columns();
-    this->sum_motion(clock_.data());
     columns_.measure(at, surroundings_.bed());
     {
       const ProfilePhase<Device> phase(device_, "grid");
@@ -227,11 +234,10 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
             .maps = maps_.view(),
             .motion = motion_.sums(),
             .submersion = this->submersion(),
-            .nodes = {nodes_.data(), changes},
+            .nodes = {nodes(), changes},
+            .next = {at_nodes(!odd_), forces_apart() ? at_nodes(!odd_, true) : nullptr},
             .holds = !settings_.energy_budget && grid_.view().mapping == Mapping::terrain_following};
   }
-
-  Buffer<Vec4<Real>, Device> nodes_{device_}, forces_{device_};
 
  private:
   /// Whether points may go further from home than a cell: a CPU, and sums in order, go by blocks of four columns.
@@ -264,19 +270,14 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     return cpu_steps_between_sorts;
   }
 
-  /// Records the maps of speed and pressure where the clock has halted at an event, or at once where it is null.
-  void look_back(const Clock* clock) {
-    this->measure_columns();
-    this->sum_motion(clock);
-    this->record_motion();
-  }
-
-  /// The method gives the device so many steps. Those in which water flows have kernels that the others go without.
-  void start_steps(const Clock& clock, int count) {
+  /// The method gives the device the steps of a batch. Those in which water flows have kernels that the others go
+  /// without.
+  void start_steps(const Clock& clock) {
+    const int count = clock.steps_ahead;
     for (int n = 0; n < count; ++n) {
       int still = 0;
       while (n + still < count && !clock.water.flows_after(clock.step + n + still)) ++still;
-      recording_.repeat(still, [&] { step(); });
+      start_still_steps(still);
       n += still;
       if (n == count) return;
       flows_ = true;
@@ -284,10 +285,22 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
       flows_ = false;
     }
   }
+  /// The method starts steps without water, by two where they take turns with the nodes.
+  void start_still_steps(int count) {
+    if (odd_ && count > 0) {
+      step();
+      --count;
+    }
+    recording_.repeat(count / 2, [&] {
+      step();
+      step();
+    });
+    if (count % 2 != 0) step();
+  }
 
-  /// The step in four verbs: clear, scatter, update, gather. MUSL maps the points' new momentum back before the stress.
+  /// The step in three verbs: scatter, update, gather. MUSL maps the points' new momentum back before the stress. Nodes
+  /// are scattered to that the step before has cleared.
   void step() {
-    clear(true);
     if (forces_apart()) {
       scatter<by_layers ? Scatter::force : Scatter::springs>();
     } else if constexpr (by_layers) {
@@ -296,18 +309,16 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     update_nodes();
     if (!settings_.remaps_velocity()) return gather<Gather::all>();
     gather<Gather::motion>();
-    clear(false);
+    odd_ = !odd_;
     scatter<Scatter::momentum>();
     remap();
     gather<Gather::deformation>();
   }
+  OpenStep open_step() { return {clock_.data(), shaking_.view()}; }
 
-  void clear(bool opens) {
-    const ProfilePhase<Device> phase(device_, "clear the grid");
-    const int count = grid_.nodes();
-    for_each(
-        device_, std::max(count, 1),
-        BeginStep<Real>{clock_.data(), nodes_.data(), opens ? forces_.data() : nullptr, count, opens, shaking_.view()});
+  /// The place of one of the two sets of nodes that steps take turns with, or of the forces on them.
+  Vec4<Real>* at_nodes(bool odd, bool forces = false) {
+    return nodes_.data() + static_cast<std::size_t>(grid_.nodes()) * ((forces ? 2U : 0U) + (odd ? 1U : 0U));
   }
 
   /// The method makes velocities of the points' new momentum.
@@ -318,7 +329,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     around.columns = {};
     {
       const ProfilePhase<Device> phase(device_, "grid");
-      for_each_column<block_columns>(device_, at.blocks, RemapColumns<Real>{around, nodes_.data()});
+      for_each_column<block_columns>(device_, at.blocks, RemapColumns<Real>{around, nodes()});
     }
     columns_.hold(at, walls_, this->column_density().uniform, false);
     meet_surfaces(at, NodeInertia<Device>(device_), false);
@@ -328,7 +339,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     return {.grid = grid_.view(),
             .active = grid_.active_list(),
             .blocks = grid_.active_blocks(),
-            .nodes = {nodes_.data(), changes},
+            .nodes = {nodes(), changes},
             .step = {clock_.data(), 0, {settings_.gravity_vector(), settings_.gravity_ramp}}};
   }
 
@@ -345,12 +356,16 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
   template <Gather part>
   void gather() {
     const ProfilePhase<Device> phase(device_, "grid to points");
-    const Vec4<Real>* const changes = settings_.decay_time > 0 ? forces_.data() : nullptr;
+    const Vec4<Real>* const changes = settings_.decay_time > 0 ? forces() : nullptr;
     const auto run = [&]<bool budget, class Laws>(const Materials<Real, Laws>& materials) {
-      for_each(device_, points_.count(),
-               GridToParticle<Real, Shape, part, budget, by_layers, Laws>{grid_.view(), points_.view(), materials,
-                                                                          clock_.data(), nodes_.data(), changes,
-                                                                          grid_.home(), settings_.affine(), dilatant_});
+      const GridToParticle<Real, Shape, part, budget, by_layers, Laws> kernel{
+          grid_.view(), points_.view(), materials,          clock_.data(), nodes(),
+          changes,      grid_.home(),   settings_.affine(), dilatant_};
+      if constexpr (part == Gather::motion) {
+        for_each(device_, points_.count(), kernel);
+      } else {
+        for_each_then(device_, points_.count(), kernel, open_step());
+      }
     };
     if (settings_.energy_budget) {
       run.template operator()<true>(materials_);
@@ -359,6 +374,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     } else {
       with_laws_of(materials_, [&](const auto& materials) { run.template operator()<false>(materials); });
     }
+    if constexpr (part != Gather::motion) odd_ = !odd_;
   }
 
   void sort(int outflow_count) {
@@ -366,14 +382,15 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     recording_.forget();
     this->fit(outflow_count);
     const auto count = static_cast<std::size_t>(grid_.nodes());
-    nodes_.resize(count);
-    if (forces_apart()) forces_.resize(count);
+    nodes_.resize_zeroed((forces_apart() ? 4 : 2) * count);
     resize_nodes(count);
   }
 
-  Recording<Device> recording_;  ///< of a step
-  int expected_ = 32;            ///< steps between sorts
-  bool flows_ = false;           ///< water does, in the step that is being started
+  Buffer<Vec4<Real>, Device> nodes_{device_};  ///< two sets, then the forces on both where they are apart
+  bool odd_ = false;                           ///< the step that is being started has the second set
+  Recording<Device> recording_;                ///< of two steps
+  int expected_ = 32;                          ///< steps between sorts
+  bool flows_ = false;                         ///< water does, in the step that is being started
   Walls<Real> walls_;
   const Vec3<double>* loads_now_ = nullptr;
   ColumnContact<Real, Device> columns_;

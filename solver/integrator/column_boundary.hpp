@@ -136,6 +136,17 @@ struct NodeMass {
   TALUS_HD static Real mobility_ratio() { return Real(1); }  ///< tangential over normal mobility [-]
 };
 
+/// The nodes of the next step, which the kernel that updates those of this one clears.
+template <class Real>
+struct NextNodes {
+  Vec4<Real>* nodes = nullptr;
+  Vec4<Real>* forces = nullptr;  ///< null where forces are folded into the momentum
+  TALUS_HD void clear(int n) const {
+    nodes[n] = Vec4<Real>{};
+    if (forces) forces[n] = Vec4<Real>{};
+  }
+};
+
 /// The surroundings of the columns in a step: gravity, walls, bed, and the maps and sums that a step updates.
 template <class Real>
 struct ColumnBoundary {
@@ -154,6 +165,7 @@ struct ColumnBoundary {
   Vec4<Real>* motion;  ///< see record_motion()
   Submersion<Real> submersion;
   solver::PackedNodes<Real> nodes = {};
+  NextNodes<Real> next = {};
   bool holds = false;  ///< finish() holds columns that would leave the ground for a low hop (T12c)
 
   /// Column number c of the active blocks; not inside where it is out of the domain or the batch has halted.
@@ -234,6 +246,7 @@ struct RemapColumns {
   TALUS_HD void layer(const Column& at, int k, Sums&) const {
     const int n = at.node(k);
     const Vec4<Real> node = nodes[n];
+    boundary.next.clear(n);
     if (!(node.w > Real(0))) return;
     NodeVelocities<Real> v;
     v.before = v.free = {node.x / node.w, node.y / node.w, node.z / node.w};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bed, loads, shaking, maps and clock in the memory of a device, all that the mass can touch there, and what opens a
-// step by the clock and ends a batch.
+// Bed, loads, shaking, maps and clock in the memory of a device, all that the mass can touch there, and what opens the
+// steps of a batch.
 #pragma once
 
 #include <algorithm>
@@ -220,37 +220,23 @@ class DeviceClock {
   HostRoom<Clock, Device> room_;
 };
 
-/// One thread: one node. It clears the node; the first one also opens the step.
-template <class Real>
-struct BeginStep {
+/// One thread. It opens a step of a batch, where one is left; the last one it closes: the clock halts where something
+/// is due. A batch that has halted stays as it is.
+struct OpenStep {
   Clock* clock;
-  Vec4<Real>* nodes;
-  Vec4<Real>* forces;  ///< null when forces are folded into the momentum
-  int count;
-  bool opens;
   ShakingView shaking{};
-  /// The memory that the kernel moves [bytes].
-  double bytes(int) const { return count * static_cast<double>((forces ? 2 : 1) * sizeof(*nodes)); }
-  TALUS_HD void operator()(int n) const {
-    if (n == 0 && opens) {
-      Clock now = *clock;  // read at once, not number by number as it is needed
+  TALUS_HD unsigned* ticket() const { return &clock->ticket; }
+  TALUS_HD void operator()(int = 0) const {
+    Clock now = *clock;  // read at once, not number by number as it is needed
+    if (now.alarms.halt != running) return;
+    if (now.steps_ahead == 0) {
+      now.motion_maps.is_due = 0;
+      now.halt_where_due();
+    } else {
+      --now.steps_ahead;
       now.begin_step();
       if (shaking.acts() && now.alarms.halt == running) now.shake(shaking.velocity_at(now.time));
-      *clock = now;
     }
-    if (n >= count) return;
-    nodes[n] = Vec4<Real>{};
-    if (forces) forces[n] = Vec4<Real>{};
-  }
-};
-
-/// One thread. Halts the clock where something is due after a batch; sums motion up for the maps where no step has.
-struct CloseBatch {
-  Clock* clock;
-  TALUS_HD void operator()(int) const {
-    Clock now = *clock;
-    now.motion_maps.is_due = 0;
-    now.halt_where_due();
     *clock = now;
   }
 };

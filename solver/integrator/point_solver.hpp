@@ -135,11 +135,16 @@ class PointSolver : public Solver {
 
   /// The density of what lies over each column, as it was measured last.
   ColumnDensity<Real> column_density() const { return {materials_.list[0].density, measures_.column_volumes()}; }
-  /// The method sums up the motion of the points as they are over the columns, whenever the clock says so, or at once
-  /// where that is null; they must not have gone further since they were sorted than a step may begin with.
-  void sum_motion(const Clock* clock) { motion_.sum(points_.view(), materials_, grid_, clock); }
-  /// The method records the maps of speed and pressure from the motion that was summed up.
-  void record_motion() { motion_.record(grid_, column_density(), maps_.view()); }
+  /// The scatter that sums up the motion of the points over the columns, whenever the clock says so, or always where
+  /// that is null; they must not have gone further since they were sorted than a step may begin with.
+  auto sum_of_motion(const Clock* clock) { return motion_.sum(points_.view(), materials_, grid_.view(), clock); }
+  /// The method records the maps of speed and pressure from the points as they are.
+  void record_motion() {
+    measure_columns();
+    const ProfilePhase<Device> phase(device_, "maps");
+    scatter_points(device_, points_.count(), grid_.groups(), sum_of_motion(nullptr));
+    motion_.record(grid_, column_density(), maps_.view());
+  }
 
   /// Starts to measure what a record asks for: the energies, and where that is no work of the host's the packing too.
   void start_measures() {

@@ -91,7 +91,7 @@ struct ScatterThickness {
   }
 };
 
-/// The scatter of the points' mass [kg] and momentum [kg m/s] over the columns around them; at steps that record alone,
+/// The scatter of the points' mass [kg] and momentum [kg m/s] over the columns around them; in steps that record alone,
 /// where there is a clock. See ScatterKernel (tiles.hpp) for its members: what a column is to other scatters is here a
 /// column of one node.
 template <class Real, class Shape>
@@ -123,7 +123,8 @@ struct ScatterMotion {
   };
 
   TALUS_HD void operator()(int p) const { scatter_point(*this, p); }  ///< one thread: one point
-  TALUS_HD bool counts(int p) const { return !(clock && clock->motion_maps.is_due == 0) && points.cell[0][p] >= 0; }
+  TALUS_HD bool acts() const { return !clock || (clock->motion_maps.is_due != 0 && clock->alarms.halt == running); }
+  TALUS_HD bool counts(int p) const { return acts() && points.cell[0][p] >= 0; }
   TALUS_HD static const Source& nodes_of(const Source& s) { return s; }
   TALUS_HD int column_of(const Source& s, int q) const { return grid.column(s.i + q % width, s.j + q / width); }
   TALUS_HD static int node_in(int column, int, int) { return column; }
@@ -160,29 +161,25 @@ struct RecordMotion {
   }
 };
 
-/// The recording of speed and pressure on a device: sum() what the points do, then record() it. Kernels that go through
-/// the columns anyway may record in its place (record_motion() in map_view.hpp).
+/// The recording of speed and pressure on a device: run sum(), then record(). Kernels that go through the columns
+/// anyway may record in its place (record_motion() in map_view.hpp).
 template <class Real, class Device, class Shape>
 class MotionMaps {
  public:
   explicit MotionMaps(const Device& device) : motion_(device) {}
 
-  /// The method sums up the points as they are, in a grid that was sorted for them: whenever the clock says so, or at
-  /// once where that is null. Sums that stand are recorded before the next ones are made.
-  template <class Grid>
-  void sum(const ParticleView<Real>& points, const Materials<Real>& materials, Grid& grid, const Clock* clock) {
-    const ProfilePhase<Device> phase(motion_.device(), "maps");
-    const GridView<Real> view = grid.view();
+  /// The scatter that sums up the points as they are, in a grid that was sorted for them: where the clock says so, or
+  /// always where that is null. Sums that stand are recorded before the next ones are made.
+  ScatterMotion<Real, Shape> sum(const ParticleView<Real>& points, const Materials<Real>& materials,
+                                 const GridView<Real>& grid, const Clock* clock) {
     if (motion_.size() == 0)
-      motion_.resize_zeroed(static_cast<std::size_t>(view.columns) * static_cast<std::size_t>(view.rows));
-    scatter_points(motion_.device(), points.count, grid.groups(),
-                   ScatterMotion<Real, Shape>{view, points, materials, clock, motion_.data()});
+      motion_.resize_zeroed(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+    return {grid, points, materials, clock, motion_.data()};
   }
 
   /// The method records what was summed up.
   template <class Grid>
   void record(Grid& grid, const ColumnDensity<Real>& density, const MapView& maps) {
-    const ProfilePhase<Device> phase(motion_.device(), "maps");
     for_each(motion_.device(), grid.active_blocks() * block_columns,
              RecordMotion<Real>{grid.view(), grid.active_list(), density, motion_.data(), maps});
   }

@@ -6,6 +6,7 @@
 // of so many threads share a multiprocessor.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -117,6 +118,13 @@ void for_each(const CpuDevice& device, int count, const Kernel& kernel) {
       &kernel);
 }
 
+/// The same; then finish() runs once, when all of it is done.
+template <class Kernel, class Finish>
+void for_each_then(const CpuDevice& device, int count, const Kernel& kernel, const Finish& finish) {
+  for_each(device, count, kernel);
+  finish();
+}
+
 /// The ranges of points, one per occupied column block, in four colours: blocks of one colour share no grid node.
 struct PointGroups {
   using Range = std::pair<int, int>;  // [begin, end) into the points
@@ -172,21 +180,43 @@ namespace detail {
 /// Threads of a block: few where there is little to do, so that every multiprocessor gets some of it.
 inline int threads_for(bool busy) { return busy ? 128 : 32; }
 
-/// A thread for each index, as it is launched.
-template <class Kernel>
+/// Whether this block of a launch is the last one that comes here: then what the others wrote before is there to be
+/// read. `ticket` is zero before a launch, and again behind it. All threads of the block have to call.
+__device__ inline bool comes_last(unsigned* ticket, int blocks) {
+  __shared__ bool last;
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    __threadfence();
+    const auto final = static_cast<unsigned>(blocks - 1);
+    last = atomicInc(ticket, final) == final;
+  }
+  __syncthreads();
+  if (last) __threadfence();
+  return last;
+}
+
+/// Nothing to do once a kernel has ended.
+struct NoFinish {};
+
+/// A thread for each index, as it is launched; a finish is for the first thread of the last block.
+template <class Kernel, class Finish = NoFinish>
 struct EachIndex {
   using Named = Kernel;
   int count;
   Kernel kernel;
+  Finish finish = {};
   __device__ void run(LaunchBlock at) const {
     const int i = at.index * static_cast<int>(blockDim.x) + static_cast<int>(threadIdx.x);
     if (i < count) kernel(i);
+    if constexpr (!std::is_same_v<Finish, NoFinish>) {
+      if (comes_last(finish.ticket(), at.count) && threadIdx.x == 0) finish();
+    }
   }
 };
 
 /// The same in as many registers as let this number of blocks of 128 threads share a multiprocessor.
-template <int blocks, class Kernel>
-struct EachIndexDensely : EachIndex<Kernel> {
+template <int blocks, class Kernel, class Finish>
+struct EachIndexDensely : EachIndex<Kernel, Finish> {
   static constexpr int most_threads = 128, least_blocks = blocks;
 };
 
@@ -195,21 +225,26 @@ inline bool is_busy_with(int count) { return count >= points_that_keep_a_gpu_bus
 }  // namespace detail
 
 /// On a GPU the kernel has one thread for each index, and as many blocks as its `dense` asks for where there are many.
-template <class Kernel>
-void for_each(const GpuDevice& device, int count, const Kernel& kernel) {
-  if (count <= 0) return;
+/// The last block to end runs finish(); finish.ticket() is for comes_last().
+template <class Kernel, class Finish>
+void for_each_then(const GpuDevice& device, int count, const Kernel& kernel, const Finish& finish) {
   const KernelTime<GpuDevice> time(device, kernel, count);
   const bool busy = detail::is_busy_with(count);
-  const int threads = detail::threads_for(busy), blocks = (count + threads - 1) / threads;
+  const int threads = detail::threads_for(busy), blocks = std::max((count + threads - 1) / threads, 1);
   if constexpr (requires { Kernel::dense; }) {
     if constexpr (Kernel::dense > 1) {
       if (busy) {
         return detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
-                                  detail::EachIndexDensely<Kernel::dense, Kernel>{{count, kernel}});
+                                  detail::EachIndexDensely<Kernel::dense, Kernel, Finish>{{count, kernel, finish}});
       }
     }
   }
-  detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads, detail::EachIndex<Kernel>{count, kernel});
+  detail::gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
+                     detail::EachIndex<Kernel, Finish>{count, kernel, finish});
+}
+template <class Kernel>
+void for_each(const GpuDevice& device, int count, const Kernel& kernel) {
+  if (count > 0) for_each_then(device, count, kernel, detail::NoFinish{});
 }
 
 /// One thread: the points of a block, one after the other.

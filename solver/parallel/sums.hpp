@@ -119,16 +119,10 @@ struct SumEach {
       for (int k = 0; k < K; ++k) sums[k] += terms.value[k];
     }
     sum_block<K>(sums);
-    __shared__ bool last;
     if (thread == 0) {
       for (int k = 0; k < K; ++k) partial[k * at.count + at.index] = sums[k];
-      __threadfence();
-      const auto final = static_cast<unsigned>(at.count - 1);
-      last = atomicInc(ticket, final) == final;
     }
-    __syncthreads();
-    if (!last) return;
-    __threadfence();
+    if (!comes_last(ticket, at.count)) return;
     for (int k = 0; k < K; ++k) {
       sums[k] = 0;
       for (int b = thread; b < at.count; b += threads) sums[k] += __ldcg(&partial[k * at.count + b]);

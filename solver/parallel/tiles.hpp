@@ -77,10 +77,18 @@ TALUS_HD void scatter_point(const Kernel& kernel, int p) {
   }
 }
 
-/// This function runs a scatter over `count` points; on the CPU each point scatters alone, by scatter_point().
-template <class Kernel>
-void scatter_points(const CpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
+/// No second scatter.
+struct NoScatter {};
+
+/// This function runs a scatter over `count` points, and where there is a second one, that too where acts() says so. On
+/// the CPU each point scatters alone, by scatter_point().
+template <class Kernel, class Also = NoScatter>
+void scatter_points(const CpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel,
+                    const Also& also = {}) {
   for_each_grouped(device, count, groups, kernel);
+  if constexpr (ScatterKernel<Also>) {
+    if (also.acts()) for_each_grouped(device, count, groups, also);
+  }
 }
 
 #if defined(__CUDACC__)
@@ -272,10 +280,9 @@ __device__ __forceinline__ void add_alone(const Kernel& kernel, const TileLane<e
 /// column in registers for as long as the next point has the same nodes. Where its nodes are those a layer up, only the
 /// lowest layer is passed on.
 template <int each, class Kernel>
-__device__ void reduce_tile(int count, int block, const Kernel& kernel) {
+__device__ void reduce_tile(int count, int block, const Kernel& kernel, TileMemory<each, Kernel>& memory) {
   using Sizes = TileSizes<each, Kernel>;
   constexpr unsigned all = 0xffffffffu;
-  __shared__ TileMemory<each, Kernel> memory;
   const TileLane<each, Kernel> at;
   const std::uint64_t key = read_point<each>(count, block, kernel, memory);
   if (__all_sync(all, key >> 63)) return;
@@ -307,10 +314,9 @@ __device__ void reduce_tile(int count, int block, const Kernel& kernel) {
 /// The same for a scatter that parts the work on a column: a team has a lane for every share of every column. What
 /// lanes of one column add lies side by side: an atomic of 8 bytes takes as long as the 32 around it.
 template <int each, SharedScatter Kernel>
-__device__ void reduce_tile(int count, int block, const Kernel& kernel) {
+__device__ void reduce_tile(int count, int block, const Kernel& kernel, SharedTileMemory<each, Kernel>& memory) {
   constexpr int columns = Kernel::columns_each, deep = Kernel::deep, members = columns * Kernel::shares,
                 teams = warp_size / members, part = (each + teams - 1) / teams;
-  __shared__ SharedTileMemory<each, Kernel> memory;
   const std::uint64_t key = read_point<each>(count, block, kernel, memory);
   if (__all_sync(0xffffffffu, key >> 63)) return;
   const TileOrder order = order_points(key);
@@ -346,32 +352,59 @@ __device__ void reduce_tile(int count, int block, const Kernel& kernel) {
   }
 }
 
-/// A block of threads for two tiles of points, as it is launched.
+/// What the tiles of a scatter hold in shared memory.
 template <int each, class Kernel>
+struct TileRoom {
+  using Memory = TileMemory<each, Kernel>;
+};
+template <int each, SharedScatter Kernel>
+struct TileRoom<each, Kernel> {
+  using Memory = SharedTileMemory<each, Kernel>;
+};
+template <int each>
+struct TileRoom<each, NoScatter> {
+  using Memory = NoScatter;
+};
+
+/// A block of threads for two tiles of points, as it is launched. A second scatter comes after the first one in the
+/// same shared memory.
+template <int each, class Kernel, class Also>
 struct EachTile {
   using Named = Kernel;
   int count;
   Kernel kernel;
-  __device__ void run(LaunchBlock at) const { reduce_tile<each>(count, at.index, kernel); }
+  Also also;
+  __device__ void run(LaunchBlock at) const {
+    __shared__ union {
+      typename TileRoom<each, Kernel>::Memory first;
+      typename TileRoom<each, Also>::Memory second;
+    } room;
+    reduce_tile<each>(count, at.index, kernel, room.first);
+    if constexpr (ScatterKernel<Also>) {
+      if (!also.acts()) return;
+      __syncthreads();
+      reduce_tile<each>(count, at.index, also, room.second);
+    }
+  }
 };
 
 /// The same in as many registers as let this number of blocks share a multiprocessor.
-template <int each, int blocks, class Kernel>
-struct EachTileDensely : EachTile<each, Kernel> {
+template <int each, int blocks, class Kernel, class Also>
+struct EachTileDensely : EachTile<each, Kernel, Also> {
   static constexpr int most_threads = tile_warps * warp_size, least_blocks = blocks;
 };
 
-template <int each, class Kernel>
-void start_tiles(const GpuDevice& device, int count, const Kernel& kernel) {
+template <int each, class Kernel, class Also>
+void start_tiles(const GpuDevice& device, int count, const Kernel& kernel, const Also& also) {
   constexpr int points = tile_warps * each, threads = tile_warps * warp_size;
   const int blocks = (count + points - 1) / points;
   if constexpr (requires { Kernel::tiles_at_once; }) {
     if constexpr (Kernel::tiles_at_once > 0) {
       return gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads,
-                        EachTileDensely<each, Kernel::tiles_at_once, Kernel>{{count, kernel}});
+                        EachTileDensely<each, Kernel::tiles_at_once, Kernel, Also>{{count, kernel, also}});
     }
   }
-  gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads, EachTile<each, Kernel>{count, kernel});
+  gpu_launch(device, __PRETTY_FUNCTION__, blocks, threads, EachTile<each, Kernel, Also>{count, kernel, also});
 }
 
 /// A warp takes the points of a block of columns one after the other, a lane for every column of nodes.
@@ -431,24 +464,27 @@ struct EachTileInOrder {
 
 /// On a GPU warps scatter tiles of points, and add what their lanes have in common before it goes to memory; with
 /// groups.in_order a block takes the points of a column block, colour by colour.
-template <class Kernel>
-void scatter_points(const GpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel) {
+template <class Kernel, class Also = NoScatter>
+void scatter_points(const GpuDevice& device, int count, const PointGroups& groups, const Kernel& kernel,
+                    const Also& also = {}) {
   if (count <= 0) return;
-  const KernelTime<GpuDevice> time(device, kernel, count);
   if (groups.in_order) {
+    const KernelTime<GpuDevice> time(device, kernel, count);
     for (const auto& ranges : groups.on_gpu) {
       if (ranges.size() == 0) continue;
       detail::gpu_launch(device, __PRETTY_FUNCTION__, static_cast<int>(ranges.size()), detail::warp_size,
                          detail::EachTileInOrder<Kernel>{ranges.data(), kernel});
     }
+    if constexpr (ScatterKernel<Also>) scatter_points(device, count, groups, also);
     return;
   }
+  const KernelTime<GpuDevice> time(device, kernel, count);
   constexpr bool fits = 2 * detail::tile_warps * detail::warp_size * sizeof(typename Kernel::Source) <=
                         65536;  // two blocks of 32 points a warp, and room beside them
   if constexpr (fits) {
-    if (detail::is_busy_with(count)) return detail::start_tiles<32>(device, count, kernel);
+    if (detail::is_busy_with(count)) return detail::start_tiles<32>(device, count, kernel, also);
   }
-  detail::start_tiles<16>(device, count, kernel);
+  detail::start_tiles<16>(device, count, kernel, also);
 }
 #endif
 

@@ -120,6 +120,8 @@ struct Clock {
   double step_size = 0;   ///< [s]
   double next_event = 0;  ///< never stepped over [s]
   std::int64_t step = 0;
+  int steps_ahead = 0;  ///< that the batch may still open
+  unsigned ticket = 0;  ///< see OpenStep
   int accelerated = 0;  ///< point accelerations are valid: the last step was implicit
   Alarms alarms;
   StepControl control;

@@ -19,7 +19,8 @@ struct SolvedColumn {
   static constexpr double step = 0.02, kappa = 0.3, softer = 0.25;
   SmallGrid grid{0.3, -0.2};
   Vec3<double> gravity{0, 0, -9.81};
-  std::vector<Vec4<double>> nodes{SmallGrid::nodes}, forces{SmallGrid::nodes};
+  std::vector<Vec4<double>> nodes{SmallGrid::nodes}, forces{SmallGrid::nodes},
+      next_nodes = std::vector<Vec4<double>>(SmallGrid::nodes, {1, 2, 3, 4}), next_forces = next_nodes;
   std::vector<Mobility<double>> mobilities{SmallGrid::nodes};
   std::vector<double> thickness = std::vector<double>(64), speed = thickness, pressure = thickness, arrival = thickness;
   Walls<double> walls;
@@ -67,7 +68,8 @@ struct SolvedColumn {
                                    .density = {2000, nullptr},
                                    .maps = maps,
                                    .motion = nullptr,
-                                   .submersion = {}},
+                                   .submersion = {},
+                                   .next = {next_nodes.data(), next_forces.data()}},
                                   nodes.data(),
                                   forces.data(),
                                   mobilities.data(),
@@ -110,6 +112,13 @@ TEST(SolveColumns, gives_what_the_matrix_of_a_column_gives) {
     expect_near(c.node(k), {3 + change(k, 0), -1 + change(k, 1), 5 + change(k, 2)}, 1e-12, k);
     EXPECT_NEAR(c.force(k).z, change(k, 2), 1e-12) << "the change is kept for the points";
   }
+}
+
+TEST(SolveColumns, clear_the_nodes_of_the_next_step) {
+  SolvedColumn c;
+  c.solve();
+  for (const auto* next : {&c.next_nodes, &c.next_forces})
+    for (const Vec4<double>& node : *next) EXPECT_EQ(node.w + node.x + node.y + node.z, 0);
 }
 
 TEST(SolveColumns, keep_momentum_and_leave_free_fall_as_it_is) {

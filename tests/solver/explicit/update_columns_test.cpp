@@ -15,6 +15,8 @@ struct Updated {
   SmallGrid grid;
   Clock clock;
   std::vector<Vec4<double>> nodes = std::vector<Vec4<double>>(SmallGrid::nodes), forces = nodes;
+  std::vector<Vec4<double>> next_nodes = std::vector<Vec4<double>>(SmallGrid::nodes, {1, 2, 3, 4}),
+                            next_forces = next_nodes;
   std::vector<double> thickness = std::vector<double>(64), speed = thickness, pressure = thickness,
                       arrival = std::vector<double>(64, -1);
   BaseFriction<double> friction{FrictionLaw::coulomb, {{0.5}}};
@@ -35,23 +37,25 @@ struct Updated {
   template <NodeContent content, bool counts = false>
   void update() {
     const MapView maps{{thickness.data(), speed.data(), pressure.data(), arrival.data()}, 0};
-    for_each_column<block_columns>(CpuDevice::make(), 4,
-                                   UpdateColumns<double, content, counts>{{.grid = grid.view(),
-                                                                           .active = grid.active.data(),
-                                                                           .clock = &clock,
-                                                                           .gravity = {{0, 0, -10}, gravity_ramp},
-                                                                           .walls = walls,
-                                                                           .friction = friction,
-                                                                           .full_base = 1e3,
-                                                                           .columns = columns,
-                                                                           .pressed = pressed.data(),
-                                                                           .density = {2000, nullptr},
-                                                                           .maps = maps,
-                                                                           .motion = nullptr,
-                                                                           .submersion = {}},
-                                                                          nodes.data(),
-                                                                          forces.data(),
-                                                                          damping});
+    for_each_column<block_columns>(
+        CpuDevice::make(), 4,
+        UpdateColumns<double, content, counts>{{.grid = grid.view(),
+                                                .active = grid.active.data(),
+                                                .clock = &clock,
+                                                .gravity = {{0, 0, -10}, gravity_ramp},
+                                                .walls = walls,
+                                                .friction = friction,
+                                                .full_base = 1e3,
+                                                .columns = columns,
+                                                .pressed = pressed.data(),
+                                                .density = {2000, nullptr},
+                                                .maps = maps,
+                                                .motion = nullptr,
+                                                .submersion = {},
+                                                .next = {next_nodes.data(), next_forces.data()}},
+                                               nodes.data(),
+                                               forces.data(),
+                                               damping});
   }
 };
 
@@ -63,6 +67,13 @@ TEST(UpdateColumns, lets_what_is_above_the_bed_fall_and_the_bed_hold_the_rest) {
   EXPECT_EQ(u.at(u.nodes, 3).w, 100);
   EXPECT_DOUBLE_EQ(u.at(u.nodes, 0).x, 3 - 0.5 * 1);  // friction of the impulse that the bed takes
   EXPECT_DOUBLE_EQ(u.at(u.nodes, 0).z, 0);
+}
+
+TEST(UpdateColumns, clears_the_nodes_of_the_next_step) {
+  Updated u;
+  u.update<NodeContent::impulse>();
+  for (const auto* next : {&u.next_nodes, &u.next_forces})
+    for (const Vec4<double>& node : *next) EXPECT_EQ(node.w + node.x + node.y + node.z, 0);
 }
 
 TEST(UpdateColumns, grows_gravity_over_its_ramp) {

@@ -76,30 +76,6 @@ TEST(NodeStep, losses_tell_friction_from_what_presses) {
   EXPECT_DOUBLE_EQ(clock.budget.transfer_loss, 8);
 }
 
-TEST(BeginStep, clears_every_node_and_opens_the_step_once) {
-  Clock clock;
-  clock.control.longest = 0.25;
-  clock.next_event = 10;
-  std::vector<Vec4<double>> nodes(5, {1, 2, 3, 4}), forces = nodes;
-  const BeginStep<double> begin{&clock, nodes.data(), forces.data(), 4, true};
-  for (int n = 0; n < 6; ++n) begin(n);  // threads beyond the nodes do nothing
-  EXPECT_EQ(clock.step, 1);
-  EXPECT_EQ(clock.time, 0.25);
-  for (std::size_t n = 0; n < 5; ++n) {
-    EXPECT_EQ(nodes[n].w, n < 4 ? 0 : 1);
-    EXPECT_EQ(forces[n].z, n < 4 ? 0 : 4);
-  }
-}
-
-TEST(BeginStep, leaves_the_clock_alone_where_it_does_not_open_the_step) {
-  Clock clock;
-  clock.next_event = 10;
-  std::vector<Vec4<double>> nodes(1, {1, 2, 3, 4});
-  BeginStep<double>{&clock, nodes.data(), nullptr, 1, false}(0);
-  EXPECT_EQ(clock.step, 0);
-  EXPECT_EQ(nodes[0].w, 0);
-}
-
 /// A clock between two events, with a step behind it.
 Clock after_a_step() {
   Clock clock;
@@ -110,37 +86,42 @@ Clock after_a_step() {
   return clock;
 }
 
-TEST(CloseBatch, goes_on_where_nothing_is_due) {
+TEST(OpenStep, opens_the_steps_of_a_batch_and_no_more) {
   Clock clock = after_a_step();
-  CloseBatch{&clock}(0);
+  clock.steps_ahead = 2;
+  for (int n = 0; n < 4; ++n) OpenStep{&clock}();
+  EXPECT_EQ(clock.step, 2);
+  EXPECT_EQ(clock.time, 0.75);
+  EXPECT_EQ(clock.steps_ahead, 0);
   EXPECT_EQ(clock.alarms.halt, running);
-  EXPECT_EQ(clock.motion_maps.is_due, 0) << "the step has recorded what it summed up";
+  EXPECT_EQ(clock.motion_maps.is_due, 0) << "the last step has recorded what it summed up";
 }
 
-TEST(CloseBatch, halts_at_an_event_and_lets_motion_be_recorded) {
+TEST(OpenStep, halts_at_an_event_whether_or_not_steps_are_left) {
+  for (const int left : {0, 3}) {
+    Clock clock = after_a_step();
+    clock.steps_ahead = left;
+    clock.time = clock.next_event;
+    OpenStep{&clock}();
+    EXPECT_EQ(clock.alarms.halt, at_event);
+    EXPECT_EQ(clock.step, 0);
+  }
+}
+
+TEST(OpenStep, leaves_a_batch_alone_that_has_halted) {
   Clock clock = after_a_step();
-  clock.time = clock.next_event;
-  CloseBatch{&clock}(0);
-  EXPECT_EQ(clock.alarms.halt, at_event);
-  EXPECT_EQ(clock.motion_maps.is_due, 1);
+  clock.steps_ahead = 3;
+  clock.alarms.halt = wants_sort;
+  OpenStep{&clock}();
+  EXPECT_EQ(clock.step, 0);
+  EXPECT_EQ(clock.steps_ahead, 3);
 }
 
-TEST(CloseBatch, records_no_motion_again_where_a_step_has_halted_at_the_event) {
-  Clock clock = after_a_step();
-  clock.time = clock.next_event;
-  clock.begin_step();
-  ASSERT_EQ(clock.alarms.halt, at_event);
-  ASSERT_EQ(clock.motion_maps.is_due, 1) << "the kernels of that step sum it up";
-  CloseBatch{&clock}(0);
-  EXPECT_EQ(clock.alarms.halt, at_event);
-  EXPECT_EQ(clock.motion_maps.is_due, 0);
-}
-
-TEST(CloseBatch, halts_for_a_sort_or_a_failure_that_the_last_step_asked_for) {
+TEST(OpenStep, halts_for_a_sort_or_a_failure_that_the_last_step_asked_for) {
   for (const int request : {wants_sort, failed}) {
     Clock clock = after_a_step();
     clock.alarms.request = request;
-    CloseBatch{&clock}(0);
+    OpenStep{&clock}();
     EXPECT_EQ(clock.alarms.halt, request);
   }
 }

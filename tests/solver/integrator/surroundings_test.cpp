@@ -260,7 +260,8 @@ TEST(ColumnBoundary, keeps_the_separation_velocity_for_tractions) {
 TEST(RemapColumns, makes_velocity_of_momentum_without_friction) {
   Bounded b;
   b.boundary.friction.law = FrictionLaw::none;
-  std::vector<Vec4<double>> nodes(SmallGrid::nodes);
+  std::vector<Vec4<double>> nodes(SmallGrid::nodes), next(SmallGrid::nodes, {1, 2, 3, 4});
+  b.boundary.next = {next.data(), nullptr};
   const auto base = static_cast<std::size_t>(b.grid.view().find(5, 2, 0)),
              above = static_cast<std::size_t>(b.grid.view().find(5, 2, 3));
   nodes[base] = nodes[above] = {100, 300, 0, -100};
@@ -269,6 +270,7 @@ TEST(RemapColumns, makes_velocity_of_momentum_without_friction) {
   EXPECT_EQ(nodes[base].z, 0) << "no penetration of the bed";
   EXPECT_EQ(nodes[above].z, -1);
   EXPECT_EQ(b.arrival[SmallGrid::column], -1) << "no maps";
+  for (const Vec4<double>& node : next) EXPECT_EQ(node.w + node.z, 0) << "cleared for the next step";
 }
 
 TEST(DeviceMaps, hold_what_kernels_left_in_what_the_run_started_from) {

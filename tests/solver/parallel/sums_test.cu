@@ -25,8 +25,39 @@ struct Finish {
   }
 };
 
+/// Counts its calls, and the indices done until then.
+struct CountSeen {
+  const int* seen;
+  int count;
+  int* found;
+  unsigned* at;
+  TALUS_HD unsigned* ticket() const { return at; }
+  TALUS_HD void operator()() const {
+    ++found[0];
+    for (int i = 0; i < count; ++i) found[1] += seen[i];
+  }
+};
+struct SeeOne {
+  int* seen;
+  TALUS_HD void operator()(int i) const { seen[i] = 1; }
+};
+
 class Sums : public InEachPlace {
  protected:
+  template <class Device>
+  static void finish_once() {
+    const Device device = Device::make();
+    Buffer<unsigned, Device> ticket(device);
+    ticket.upload({0U});
+    for (const int count : {0, 1, 33, 5000, 70000}) {
+      Buffer<int, Device> seen(device), found(device);
+      seen.resize_zeroed(static_cast<std::size_t>(std::max(count, 1)));
+      found.resize_zeroed(2);
+      for (int repeat = 0; repeat < 2; ++repeat)
+        for_each_then(device, count, SeeOne{seen.data()}, CountSeen{seen.data(), count, found.data(), ticket.data()});
+      EXPECT_EQ(found.download(), (std::vector<int>{2, 2 * count}));
+    }
+  }
   template <class Device>
   static void add_up() {
     const Device device = Device::make();
@@ -58,6 +89,12 @@ class Sums : public InEachPlace {
   }
 };
 
+TEST_P(Sums, of_a_loop_are_made_once_it_is_done) {
+#if TALUS_FOR_GPU
+  if (GetParam() == On::gpu) return finish_once<GpuDevice>();
+#endif
+  finish_once<CpuDevice>();
+}
 TEST_P(Sums, are_finished_once_and_repeat_to_the_bit) {
 #if TALUS_FOR_GPU
   if (GetParam() == On::gpu) return add_up<GpuDevice>();
