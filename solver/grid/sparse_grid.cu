@@ -12,6 +12,7 @@ namespace {
 constexpr int no_layer_low = 0x7fffffff;
 constexpr int no_layer_high = -1;
 
+/// One thread: one block, which needs no layer yet.
 struct ForgetExtents {
   int* lowest;
   int* highest;
@@ -19,6 +20,14 @@ struct ForgetExtents {
     lowest[b] = no_layer_low;
     highest[b] = no_layer_high;
   }
+};
+
+/// The nodes and the blocks of a list as one number, so that they are summed together.
+struct NodesAndBlocks {
+  static constexpr int block_shift = 32;
+  std::uint64_t both;
+  TALUS_HD int nodes() const { return static_cast<int>(both & 0xffffffffu); }
+  TALUS_HD int blocks() const { return static_cast<int>(both >> block_shift); }
 };
 
 /// A point reaches a column and a layer beyond the way it may go before the next sort: that of its stencil. One that
@@ -46,33 +55,36 @@ struct MeasureExtents {
   }
 };
 
-/// One thread: one block. It counts the nodes that the block needs, and notes whether it is in use.
+/// One thread: one block. It counts the nodes that the block needs, and itself where it needs any.
 struct CountNodes {
   const int* lowest;
   const int* highest;
-  int* sizes;
-  int* in_use;
+  std::uint64_t* counts;
   TALUS_HD void operator()(int b) const {
-    const bool used = highest[b] >= lowest[b];
-    sizes[b] = used ? (highest[b] - lowest[b] + 1) * block_columns : 0;
-    in_use[b] = used ? 1 : 0;
+    const int layers = highest[b] - lowest[b] + 1;
+    counts[b] = highest[b] < lowest[b] ? 0
+                                       : (std::uint64_t{1} << NodesAndBlocks::block_shift) +
+                                             static_cast<std::uint64_t>(layers) * block_columns;
   }
 };
 
+/// One thread: one block. It gets its place, and needs no layer until the next storage is made.
 struct GiveStorage {
-  const int* lowest;
-  const int* highest;
-  const int* offsets;
-  const int* places;
+  ForgetExtents extents;
+  const std::uint64_t* upto;  ///< nodes and blocks up to this one
   BlockSlot* slots;
   int* active;
   TALUS_HD void operator()(int b) const {
-    if (highest[b] < lowest[b]) {
+    const int lowest = extents.lowest[b], highest = extents.highest[b];
+    if (highest < lowest) {
       slots[b] = BlockSlot{};
       return;
     }
-    slots[b] = BlockSlot{offsets[b] - lowest[b] * block_columns, lowest[b], highest[b] - lowest[b] + 1};
-    active[places[b]] = b;
+    const NodesAndBlocks end{upto[b]};
+    const int layers = highest - lowest + 1;
+    slots[b] = BlockSlot{end.nodes() - (layers + lowest) * block_columns, lowest, layers};
+    active[end.blocks() - 1] = b;
+    extents(b);
   }
 };
 
@@ -82,8 +94,10 @@ template <class Device>
 BlockStorage<Device>::BlockStorage(const Device& device, int columns, int rows)
     : device_(device), columns_(columns), rows_(rows) {
   const auto blocks = static_cast<std::size_t>(blocks_across(columns)) * static_cast<std::size_t>(blocks_across(rows));
-  for (auto* buffer : {&lowest_, &highest_, &sizes_, &places_, &active_list_}) buffer->resize(blocks);
+  for (auto* buffer : {&lowest_, &highest_, &active_list_}) buffer->resize(blocks);
+  upto_.resize(blocks);
   slots_.resize(blocks);
+  for_each(device_, static_cast<int>(blocks), ForgetExtents{lowest_.data(), highest_.data()});
 }
 
 template <class Device>
@@ -96,7 +110,6 @@ void BlockStorage<Device>::fit(const ParticleView<Real>& points, const Reach& re
 template <class Device>
 template <class Real>
 void BlockStorage<Device>::measure_extents(const ParticleView<Real>& points, const Reach& reach) {
-  for_each(device_, static_cast<int>(lowest_.size()), ForgetExtents{lowest_.data(), highest_.data()});
   for_each(
       device_, points.count,
       MeasureExtents<Real>{points, columns_, rows_, blocks_across(columns_), reach, lowest_.data(), highest_.data()});
@@ -105,13 +118,12 @@ void BlockStorage<Device>::measure_extents(const ParticleView<Real>& points, con
 template <class Device>
 void BlockStorage<Device>::give_storage() {
   const int blocks = static_cast<int>(lowest_.size());
-  for_each(device_, blocks, CountNodes{lowest_.data(), highest_.data(), sizes_.data(), places_.data()});
-  const auto totals = exclusive_sums(device_, sizes_.data(), places_.data(), blocks);
-  nodes_ = totals[0];
-  active_ = totals[1];
-  for_each(
-      device_, blocks,
-      GiveStorage{lowest_.data(), highest_.data(), sizes_.data(), places_.data(), slots_.data(), active_list_.data()});
+  for_each(device_, blocks, CountNodes{lowest_.data(), highest_.data(), upto_.data()});
+  const NodesAndBlocks all{inclusive_sum(device_, upto_.data(), upto_.data(), blocks)};
+  nodes_ = all.nodes();
+  active_ = all.blocks();
+  for_each(device_, blocks,
+           GiveStorage{{lowest_.data(), highest_.data()}, upto_.data(), slots_.data(), active_list_.data()});
 }
 
 template class BlockStorage<CpuDevice>;

@@ -36,7 +36,7 @@ class BlockStorage {
   int active_blocks() const { return active_; }  ///< number of blocks with storage
   /// The blocks with storage, [active_blocks()] on the device.
   const int* active_list() const { return active_list_.data(); }
-  std::size_t bytes() const { return bytes_of(slots_, lowest_, highest_, sizes_, places_, active_list_); }
+  std::size_t bytes() const { return bytes_of(slots_, lowest_, highest_, upto_, active_list_); }
 
  private:
   template <class Real>
@@ -48,7 +48,7 @@ class BlockStorage {
   int nodes_ = 0, active_ = 0;
   Buffer<BlockSlot, Device> slots_{device_};
   Buffer<int, Device> lowest_{device_}, highest_{device_};  ///< layers that a block needs
-  Buffer<int, Device> sizes_{device_}, places_{device_};  ///< nodes of a block, then before it; blocks in use before it
+  Buffer<std::uint64_t, Device> upto_{device_};             ///< nodes and blocks in use up to a block
   Buffer<int, Device> active_list_{device_};
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What explicit and column-implicit integrators share: batches of steps on the device, sorts between them, and a step
-// in four verbs. Written once for both devices, both precisions and all shapes.
+// in three verbs. Written once for both devices, both precisions and all shapes.
 #pragma once
 
 #include <algorithm>
@@ -54,7 +54,7 @@ inline Drift drift_after(Drift now, int steps, bool climbed) {
 
 inline constexpr int most_batch_steps = 64;  // given to the device before the host looks at the clock
 
-/// An integrator whose steps are bounded by the CFL condition: clear, scatter, update, gather. Derived classes update
+/// An integrator whose steps are bounded by the CFL condition: scatter, update, gather. Derived classes update
 /// the nodes; their constructors end with start(). `by_layers`: waves across the layers bound the step.
 template <class Real, class Device, class Shape, bool by_layers>
 class BatchSolver : public PointSolver<Real, Device, Shape> {
@@ -81,10 +81,8 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     loads_now_ = loads_.upload(clock.time, clock.time);
     if (!settings_.walls.empty()) recording_.forget();  // they come, go and move
     clock_.lend();
-    clock_.pass_in();
-    for_each(device_, 1, open_step());
+    for_each(device_, 1, open_step(clock_.room()));
     start_steps(clock);
-    clock_.pass_out();
     BatchReport report;
     clock = clock_.read();
     int halt = clock.alarms.halt;
@@ -314,7 +312,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
     remap();
     gather<Gather::deformation>();
   }
-  OpenStep open_step() { return {clock_.data(), shaking_.view()}; }
+  OpenStep open_step(const Clock* from) { return {from, clock_.data(), clock_.room(), shaking_.view()}; }
 
   /// The place of one of the two sets of nodes that steps take turns with, or of the forces on them.
   Vec4<Real>* at_nodes(bool odd, bool forces = false) {
@@ -364,7 +362,7 @@ class BatchSolver : public PointSolver<Real, Device, Shape> {
       if constexpr (part == Gather::motion) {
         for_each(device_, points_.count(), kernel);
       } else {
-        for_each_then(device_, points_.count(), kernel, open_step());
+        for_each_then(device_, points_.count(), kernel, open_step(clock_.data()));
       }
     };
     if (settings_.energy_budget) {

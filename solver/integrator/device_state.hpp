@@ -195,17 +195,16 @@ class DeviceClock {
     written_ = false;
     with_kernels_ = true;
   }
-  /// The method hands the clock over to kernels between those of pass_in() and pass_out(), which are started for it:
-  /// no copy by the host is needed.
+  /// The method hands the clock over to kernels the first of which takes it from room() and the last of which leaves it
+  /// there: no copy by the host is needed.
   void lend() {
     *room_ = host_;
     written_ = false;
     with_kernels_ = lent_ = true;
   }
-  void pass_in() { room_.copy_to(memory_.data()); }     ///< starts the kernel that brings what was lent to kernels
-  void pass_out() { room_.copy_from(memory_.data()); }  ///< starts the kernel that brings it back
-  /// The clock for kernels, after hand_over(); always at the same address.
+  /// The clock for kernels, after hand_over() or lend(); always at the same address.
   Clock* data() { return memory_.data(); }
+  Clock* room() { return &*room_; }  ///< where the host lends it, for kernels too
 
  private:
   Clock lent() const {
@@ -221,23 +220,26 @@ class DeviceClock {
 };
 
 /// One thread. It opens a step of a batch, where one is left; the last one it closes: the clock halts where something
-/// is due. A batch that has halted stays as it is.
+/// is due. The clock of a batch that has halted stays as it is. One that opens no step goes to the host.
 struct OpenStep {
-  Clock* clock;
+  const Clock* from;  ///< the clock as it is
+  Clock* clock;       ///< that of the step's kernels
+  Clock* room;        ///< on the host
   ShakingView shaking{};
   TALUS_HD unsigned* ticket() const { return &clock->ticket; }
   TALUS_HD void operator()(int = 0) const {
-    Clock now = *clock;  // read at once, not number by number as it is needed
-    if (now.alarms.halt != running) return;
-    if (now.steps_ahead == 0) {
-      now.motion_maps.is_due = 0;
-      now.halt_where_due();
-    } else {
+    Clock now = *from;  // read at once, not number by number as it is needed
+    const bool opens = now.alarms.halt == running && now.steps_ahead > 0;
+    if (opens) {
       --now.steps_ahead;
       now.begin_step();
       if (shaking.acts() && now.alarms.halt == running) now.shake(shaking.velocity_at(now.time));
+    } else if (now.alarms.halt == running) {
+      now.motion_maps.is_due = 0;
+      now.halt_where_due();
     }
     *clock = now;
+    if (!opens) *room = now;
   }
 };
 

@@ -76,7 +76,7 @@ struct BinPacking {
   TALUS_HD static int nearest(int a, int b) { return a < b ? a : b; }
 };
 
-/// What is summed over the cells: side by side, so that it is cleared and read at once.
+/// What is summed over the cells, side by side so that it is cleared and read at once.
 struct PackingSums {
   CellParts bins[packing_bins];
   std::uint32_t most;  ///< largest, as float bits
@@ -101,15 +101,13 @@ class ParticleMeasures {
   /// The constructor takes the grid whose cells the maps have.
   ParticleMeasures(const Device& device, const GridShape& shape)
       : device_(device), columns_(shape.columns), rows_(shape.rows), spacing_(shape.spacing) {
-    totals_.resize(Energy::rows);
     sums_.ticket();
   }
 
   /// The method starts the sums over `count` particles.
   void start_energies(int count, const Energy& measure) {
     const ProfilePhase<Device> phase(device_, "records and frames");
-    sum_each<Energy::rows>(device_, count, sums_, measure, KeepTotals<Energy::rows>{totals_.data()});
-    room_.copy_from(reinterpret_cast<const Totals*>(totals_.data()));
+    sum_each<Energy::rows>(device_, count, sums_, measure, KeepTotals<Energy::rows>{(*room_).value});
   }
   /// The sums that were started last; waits for the device.
   Energies energies() const {
@@ -138,12 +136,10 @@ class ParticleMeasures {
     for_each_grouped(device_, points.count, grid.groups(), ScatterParts<Real>{grid.view(), points, parts_.data()});
     for_each(device_, grid.active_blocks() * block_columns,
              BinPacking<Real>{grid.view(), grid.active_list(), parts_.data(), sums->bins, &sums->most});
-    packing_room_.copy_from(sums);
   }
   /// The packing whose measure was started last; waits for the device.
   Packing packing() const {
-    synchronise(device_);
-    const PackingSums& total = *packing_room_;
+    const PackingSums total = packing_sums_.download().front();
     return packing_of(total.bins, static_cast<double>(positive_from_bits(total.most)));
   }
 
@@ -164,16 +160,14 @@ class ParticleMeasures {
     for_each_grouped(device_, points.count, groups, ScatterThickness<Real, Shape>{points, columns_, volumes.data()});
   }
 
-  using Totals = Terms<Energy::rows>;
   Device device_;
   int columns_, rows_;
   double spacing_;  ///< [m]
-  Buffer<double, Device> totals_{device_}, thickness_{device_}, column_volumes_{device_};
+  Buffer<double, Device> thickness_{device_}, column_volumes_{device_};
   SumSpace<Device> sums_{device_};
-  HostRoom<Totals, Device> room_{device_};
+  HostRoom<Terms<Energy::rows>, Device> room_{device_};
   Buffer<CellParts, Device> parts_{device_};
   Buffer<PackingSums, Device> packing_sums_{device_};
-  HostRoom<PackingSums, Device> packing_room_{device_};
 };
 
 }  // namespace talus::solver

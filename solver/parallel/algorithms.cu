@@ -53,63 +53,19 @@ double copy_bandwidth(const CpuDevice& device) { return measure_copy(device); }
 
 namespace talus {
 
-BorrowedMemory::~BorrowedMemory() {
-  for (const auto& [bytes, memory] : free_) detail::free(device_, memory);
-}
-
-char* BorrowedMemory::allocate(std::ptrdiff_t bytes) {
-  const auto found = free_.lower_bound(bytes);
-  if (found != free_.end() && found->first <= 4 * bytes) {
-    char* memory = found->second;
-    taken_[memory] = found->first;
-    free_.erase(found);
-    return memory;
-  }
-  char* memory = static_cast<char*>(detail::allocate(device_, static_cast<std::size_t>(bytes)));
-  taken_[memory] = bytes;
-  return memory;
-}
-
-void BorrowedMemory::deallocate(char* memory, std::size_t) {
-  const auto entry = taken_.find(memory);
-  free_.emplace(entry->second, memory);
-  taken_.erase(entry);
-}
-
 namespace {
 
 /// The policy that sends Thrust's work to the device's stream; it is asked for anew before every call.
 auto policy(const GpuDevice& device) {
   GpuState& state = device.state();
   state.select();
-  return thrust::cuda::par_nosync(state.scratch->borrowed).on(state.stream);
+  return thrust::cuda::par_nosync(*state.memory).on(state.stream);
 }
 
 struct Products {
   const double *a, *b;
   TALUS_HD Terms<1> operator()(int i) const { return {{a[i] * b[i]}}; }
 };
-
-/// One thread. It keeps the last value of a list: with the last of its sums it gives the total.
-struct TakeLast {
-  const int* values;
-  int at;
-  int* last;
-  TALUS_HD void operator()(int) const { *last = values[at]; }
-};
-struct AddLast {
-  const int* sums;
-  int at;
-  int* total;
-  TALUS_HD void operator()(int) const { *total += sums[at]; }
-};
-
-void start_sum(const GpuDevice& device, const int* values, int* sums, int count, int* total) {
-  for_each(device, 1, TakeLast{values, count - 1, total});  // before it is written over
-  thrust::exclusive_scan(policy(device), thrust::device_ptr<const int>(values),
-                         thrust::device_ptr<const int>(values) + count, thrust::device_ptr<int>(sums));
-  for_each(device, 1, AddLast{sums, count - 1, total});
-}
 
 }  // namespace
 
@@ -145,24 +101,17 @@ void drop_sort_space(const GpuDevice& device) {
   space.rest.drop();
 }
 
-int exclusive_sum(const GpuDevice& device, const int* values, int* sums, int count) {
+template <class Number>
+Number inclusive_sum(const GpuDevice& device, const Number* values, Number* sums, int count) {
   if (count == 0) return 0;
-  int* const on_device = device.state().scratch->totals.data();
-  int total = 0;
-  start_sum(device, values, sums, count, on_device);
-  detail::download(device, &total, on_device, sizeof total);
+  const thrust::device_ptr<const Number> first(values);
+  thrust::inclusive_scan(policy(device), first, first + count, thrust::device_ptr<Number>(sums));
+  Number total = 0;
+  detail::download(device, &total, sums + count - 1, sizeof total);
   return total;
 }
-
-std::array<int, 2> exclusive_sums(const GpuDevice& device, int* first, int* second, int count) {
-  std::array<int, 2> both{};
-  if (count == 0) return both;
-  int* const on_device = device.state().scratch->totals.data();
-  start_sum(device, first, first, count, on_device);
-  start_sum(device, second, second, count, on_device + 1);
-  detail::download(device, both.data(), on_device, sizeof both);
-  return both;
-}
+template int inclusive_sum(const GpuDevice&, const int*, int*, int);
+template std::uint64_t inclusive_sum(const GpuDevice&, const std::uint64_t*, std::uint64_t*, int);
 
 double inner_product(const GpuDevice& device, const double* a, const double* b, int count) {
   GpuScratch& scratch = *device.state().scratch;
@@ -202,10 +151,14 @@ namespace talus {
 void sort_order(const GpuDevice&, Buffer<std::uint64_t, GpuDevice>&, Buffer<int, GpuDevice>&, int) {
   throw std::logic_error("no CUDA");
 }
-int exclusive_sum(const GpuDevice&, const int*, int*, int) { throw std::logic_error("no CUDA"); }
+template <class Number>
+Number inclusive_sum(const GpuDevice&, const Number*, Number*, int) {
+  throw std::logic_error("no CUDA");
+}
+template int inclusive_sum(const GpuDevice&, const int*, int*, int);
+template std::uint64_t inclusive_sum(const GpuDevice&, const std::uint64_t*, std::uint64_t*, int);
 std::size_t sort_space_bytes(const GpuDevice&) { return 0; }
 void drop_sort_space(const GpuDevice&) {}
-std::array<int, 2> exclusive_sums(const GpuDevice&, int*, int*, int) { throw std::logic_error("no CUDA"); }
 double inner_product(const GpuDevice&, const double*, const double*, int) { throw std::logic_error("no CUDA"); }
 void gather(const GpuDevice&, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }
 void scatter(const GpuDevice&, const double*, const int*, double*, int) { throw std::logic_error("no CUDA"); }

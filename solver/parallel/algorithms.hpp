@@ -5,7 +5,6 @@
 // is named with them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -28,13 +27,13 @@ std::size_t sort_space_bytes(const GpuDevice& device);
 void drop_sort_space(const CpuDevice&);
 void drop_sort_space(const GpuDevice& device);
 
-/// Writes sums[i] = values[0] + ... + values[i-1] for `count` values, and returns the total. Both may be one array.
-int exclusive_sum(const CpuDevice&, const int* values, int* sums, int count);
+/// Writes sums[i] = values[0] + ... + values[i] for `count` values, and returns the total. Both may be one array.
+/// Number is int or std::uint64_t.
+template <class Number>
+Number inclusive_sum(const CpuDevice&, const Number* values, Number* sums, int count);
 /// On a GPU the call waits for the total.
-int exclusive_sum(const GpuDevice& device, const int* values, int* sums, int count);
-/// Replaces two lists of one length by their exclusive sums, and returns their totals; the device is waited for once.
-std::array<int, 2> exclusive_sums(const CpuDevice& device, int* first, int* second, int count);
-std::array<int, 2> exclusive_sums(const GpuDevice& device, int* first, int* second, int count);
+template <class Number>
+Number inclusive_sum(const GpuDevice& device, const Number* values, Number* sums, int count);
 
 /// The sum of a[i] * b[i], in a fixed order on the CPU whatever the number of threads.
 double inner_product(const CpuDevice&, const double* a, const double* b, int count);
@@ -71,12 +70,12 @@ struct MarkRunStarts {
 };
 struct PlaceRunStarts {
   const std::uint64_t* keys;
-  const int* places;  ///< runs before position i
-  int count, runs;
+  const int* runs;  ///< up to position i
+  int count;
   int* starts;
   TALUS_HD void operator()(int i) const {
-    if (i == 0 || keys[i] != keys[i - 1]) starts[places[i]] = i;
-    if (i == count - 1) starts[runs] = count;
+    if (i == 0 || keys[i] != keys[i - 1]) starts[runs[i] - 1] = i;
+    if (i == count - 1) starts[runs[i]] = count;
   }
 };
 }  // namespace detail
@@ -89,10 +88,10 @@ int find_runs(const Buffer<std::uint64_t, Device>& keys, Buffer<int, Device>& st
   const int count = static_cast<int>(keys.size());
   scratch.resize(keys.size());
   for_each(device, count, detail::MarkRunStarts{keys.data(), scratch.data()});
-  const int runs = exclusive_sum(device, scratch.data(), scratch.data(), count);
+  const int runs = inclusive_sum(device, scratch.data(), scratch.data(), count);
   starts.resize(static_cast<std::size_t>(runs) + 1);
   if (count == 0) starts.fill_zero();
-  for_each(device, count, detail::PlaceRunStarts{keys.data(), scratch.data(), count, runs, starts.data()});
+  for_each(device, count, detail::PlaceRunStarts{keys.data(), scratch.data(), count, starts.data()});
   return runs;
 }
 

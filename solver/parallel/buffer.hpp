@@ -91,7 +91,7 @@ class Buffer {
  private:
   void release() noexcept {
     if (!data_) return;
-    detail::free(device_, data_);
+    detail::free(device_, data_, bytes());
     data_ = nullptr;
     capacity_ = 0;
   }

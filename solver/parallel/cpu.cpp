@@ -29,9 +29,9 @@ void* allocate(const CpuDevice&, std::size_t bytes) {
   if (!memory) throw std::bad_alloc();
   return memory;
 }
-void free(const CpuDevice&, void* memory) noexcept { std::free(memory); }
+void free(const CpuDevice&, void* memory, std::size_t) noexcept { std::free(memory); }
 void* lend_host(const CpuDevice& device, std::size_t bytes) { return allocate(device, bytes); }
-void give_back_host(const CpuDevice& device, void* memory, std::size_t) noexcept { free(device, memory); }
+void give_back_host(const CpuDevice& device, void* memory, std::size_t bytes) noexcept { free(device, memory, bytes); }
 void upload(const CpuDevice&, void* to, const void* host, std::size_t bytes) { std::memcpy(to, host, bytes); }
 void download(const CpuDevice&, void* host, const void* from, std::size_t bytes) { std::memcpy(host, from, bytes); }
 void fill_zero(const CpuDevice&, void* memory, std::size_t bytes) { std::memset(memory, 0, bytes); }
@@ -119,22 +119,17 @@ void sort_order(const CpuDevice&, Buffer<std::uint64_t, CpuDevice>& keys, Buffer
   }
 }
 
-int exclusive_sum(const CpuDevice&, const int* values, int* sums, int count) {
-  int total = 0;
-  for (int i = 0; i < count; ++i) {
-    const int value = values[i];
-    sums[i] = total;
-    total += value;
-  }
+template <class Number>
+Number inclusive_sum(const CpuDevice&, const Number* values, Number* sums, int count) {
+  Number total = 0;
+  for (int i = 0; i < count; ++i) sums[i] = total += values[i];
   return total;
 }
+template int inclusive_sum(const CpuDevice&, const int*, int*, int);
+template std::uint64_t inclusive_sum(const CpuDevice&, const std::uint64_t*, std::uint64_t*, int);
 
 std::size_t sort_space_bytes(const CpuDevice&) { return 0; }
 void drop_sort_space(const CpuDevice&) {}
-
-std::array<int, 2> exclusive_sums(const CpuDevice& device, int* first, int* second, int count) {
-  return {exclusive_sum(device, first, first, count), exclusive_sum(device, second, second, count)};
-}
 
 double inner_product(const CpuDevice&, const double* a, const double* b, int count) {
   const auto alone = [=] { return sum_of_products(a, b, 0, count); };

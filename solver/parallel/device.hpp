@@ -81,8 +81,9 @@ namespace detail {
 /// Uninitialised memory [bytes]; throws NumericalError where there is not enough.
 void* allocate(const CpuDevice&, std::size_t bytes);
 void* allocate(const GpuDevice& device, std::size_t bytes);
-void free(const CpuDevice&, void* memory) noexcept;
-void free(const GpuDevice& device, void* memory) noexcept;
+/// Frees memory of the size that was asked for [bytes].
+void free(const CpuDevice&, void* memory, std::size_t bytes) noexcept;
+void free(const GpuDevice& device, void* memory, std::size_t bytes) noexcept;
 
 /// Copies into the device's memory. `host` may be written over when the call returns.
 void upload(const CpuDevice&, void* to, const void* host, std::size_t bytes);

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // GPU devices: streams, memory, events, recordings. Without a CUDA compiler this file states that there is no GPU.
+#include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -32,6 +34,16 @@ void keep_memory(int gpu) {
 
 }  // namespace
 
+namespace {
+
+/// The size of memory that is kept by size [bytes]: a quarter of a power of two more at most.
+std::size_t rounded_up(std::ptrdiff_t bytes) {
+  const auto size = static_cast<std::size_t>(std::max<std::ptrdiff_t>(bytes, 1024)), part = std::bit_floor(size) / 4;
+  return (size + part - 1) / part * part;
+}
+
+}  // namespace
+
 void check_cuda(cudaError_t code, const char* what) {
   if (code == cudaSuccess) return;
   if (code == cudaErrorMemoryAllocation) {
@@ -39,6 +51,38 @@ void check_cuda(cudaError_t code, const char* what) {
                           "Use precision = \"single\", fewer points_per_cell, a larger spacing_m, or --on cpu"});
   }
   throw std::runtime_error(std::string("CUDA: ") + what + ": " + cudaGetErrorString(code));
+}
+
+char* StreamMemory::allocate(std::ptrdiff_t bytes) {
+  const bool keeps = bytes <= most_kept;
+  const std::size_t size = keeps ? rounded_up(bytes) : static_cast<std::size_t>(bytes);
+  const std::lock_guard<std::mutex> one(mutex_);
+  if (const auto found = keeps ? kept_.find(size) : kept_.end(); found != kept_.end()) {
+    char* const memory = found->second;
+    kept_.erase(found);
+    return memory;
+  }
+  void* memory = nullptr;
+  if (cudaMallocAsync(&memory, size, stream_) != cudaSuccess) {
+    (void)cudaGetLastError();
+    drop_kept();
+    check_cuda(cudaMallocAsync(&memory, size, stream_), "cudaMallocAsync");
+  }
+  return static_cast<char*>(memory);
+}
+
+void StreamMemory::deallocate(char* memory, std::ptrdiff_t bytes) {
+  const std::lock_guard<std::mutex> one(mutex_);
+  if (bytes <= most_kept) {
+    kept_.emplace(rounded_up(bytes), memory);
+  } else {
+    (void)cudaFreeAsync(memory, stream_);
+  }
+}
+
+void StreamMemory::drop_kept() {
+  for (const auto& [bytes, memory] : kept_) (void)cudaFreeAsync(memory, stream_);
+  kept_.clear();
 }
 
 GpuState::GpuState(int gpu) : index(gpu) {
@@ -49,9 +93,10 @@ GpuState::GpuState(int gpu) : index(gpu) {
   cudaFuncAttributes attributes;  // code made for older devices does not wait
   starts_early = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
                  attributes.ptxVersion >= 90;
-  void* memory = nullptr;
-  if (cudaMallocHost(&memory, LockedMemory::size) == cudaSuccess) locked.memory = static_cast<char*>(memory);
+  void* host = nullptr;
+  if (cudaMallocHost(&host, LockedMemory::size) == cudaSuccess) locked.memory = static_cast<char*>(host);
   (void)cudaGetLastError();
+  memory = std::make_unique<StreamMemory>(stream);
   // The scratch buffers are part of this state: their handle must not keep it alive.
   const GpuDevice self(std::shared_ptr<GpuState>(std::shared_ptr<void>(), this));
   scratch = std::make_unique<GpuScratch>(self);
@@ -61,6 +106,7 @@ GpuState::~GpuState() {
   (void)cudaSetDevice(index);
   (void)cudaStreamSynchronize(stream);
   scratch.reset();
+  memory.reset();
   for (cudaEvent_t event : free_marks) (void)cudaEventDestroy(event);
   if (locked.memory) (void)cudaFreeHost(locked.memory);
   for (const auto& [bytes, room] : host_rooms) (void)cudaFreeHost(room);
@@ -121,14 +167,12 @@ void* allocate(const GpuDevice& device, std::size_t bytes) {
   GpuState& state = device.state();
   if (state.recording) throw std::logic_error("memory that a recording allocates would end with the recording");
   state.select();
-  void* memory = nullptr;
-  check_cuda(cudaMallocAsync(&memory, bytes, state.stream), "cudaMallocAsync");
-  return memory;
+  return state.memory->allocate(static_cast<std::ptrdiff_t>(bytes));
 }
 
-void free(const GpuDevice& device, void* memory) noexcept {
+void free(const GpuDevice& device, void* memory, std::size_t bytes) noexcept {
   (void)cudaSetDevice(device.index());
-  (void)cudaFreeAsync(memory, device.state().stream);
+  device.state().memory->deallocate(static_cast<char*>(memory), static_cast<std::ptrdiff_t>(bytes));
 }
 
 void upload(const GpuDevice& device, void* to, const void* host, std::size_t bytes) {
@@ -265,7 +309,7 @@ void synchronise(const GpuDevice&) {}
 
 namespace detail {
 void* allocate(const GpuDevice&, std::size_t) { absent(); }
-void free(const GpuDevice&, void*) noexcept {}
+void free(const GpuDevice&, void*, std::size_t) noexcept {}
 void upload(const GpuDevice&, void*, const void*, std::size_t) { absent(); }
 void download(const GpuDevice&, void*, const void*, std::size_t) { absent(); }
 void fill_zero(const GpuDevice&, void*, std::size_t) { absent(); }

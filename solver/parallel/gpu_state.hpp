@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "solver/parallel/sums.hpp"
@@ -18,23 +19,27 @@ namespace talus {
 /// Throws where the call of CUDA `what` failed: NumericalError where memory was short, std::runtime_error otherwise.
 void check_cuda(cudaError_t code, const char* what);
 
-/// The memory that Thrust borrows, kept for its next call: to allocate device memory is to wait for the device.
-class BorrowedMemory {
+/// The device memory of one stream's buffers, and of Thrust, whose allocator this is. What is freed is kept for the
+/// next that asks: calls of CUDA wait for one another where many members of an ensemble make them.
+class StreamMemory {
  public:
   using value_type = char;
-  explicit BorrowedMemory(GpuDevice device) : device_(std::move(device)) {}
-  BorrowedMemory(const BorrowedMemory&) = delete;
-  BorrowedMemory& operator=(const BorrowedMemory&) = delete;
-  ~BorrowedMemory();
+  static constexpr std::ptrdiff_t most_kept = 16 << 20;  ///< larger memory goes back to CUDA's own pool [bytes]
 
-  /// At least that many bytes of device memory, taken anew only where none is free. Throws NumericalError: none left.
+  explicit StreamMemory(cudaStream_t stream) : stream_(stream) {}
+  StreamMemory(const StreamMemory&) = delete;
+  StreamMemory& operator=(const StreamMemory&) = delete;
+  ~StreamMemory() { drop_kept(); }
+
+  /// At least that many bytes, taken anew only where none of that size is kept. Throws NumericalError: none left.
   char* allocate(std::ptrdiff_t bytes);
-  void deallocate(char* memory, std::size_t bytes);  ///< keeps memory from allocate() for the next call
+  void deallocate(char* memory, std::ptrdiff_t bytes);  ///< keeps memory from allocate(bytes) for the next call
 
  private:
-  GpuDevice device_;
-  std::multimap<std::ptrdiff_t, char*> free_;
-  std::map<char*, std::ptrdiff_t> taken_;
+  void drop_kept();
+  cudaStream_t stream_;
+  std::mutex mutex_;
+  std::multimap<std::size_t, char*> kept_;  ///< by the size that it was rounded up to [bytes]
 };
 
 /// The other side that a radix sort writes to by turns; grows with the largest sort.
@@ -45,13 +50,10 @@ struct SortSpace {
   Buffer<char, GpuDevice> rest;
 };
 
-/// The memory that sorts, scans and sums keep from call to call.
+/// The memory that sorts and sums keep from call to call.
 struct GpuScratch {
-  explicit GpuScratch(const GpuDevice& device)
-      : borrowed(device), sort(device), totals(device, 2), sums(device), product(device, 1) {}
-  BorrowedMemory borrowed;
+  explicit GpuScratch(const GpuDevice& device) : sort(device), sums(device), product(device, 1) {}
   SortSpace sort;
-  Buffer<int, GpuDevice> totals;
   SumSpace<GpuDevice> sums;
   Buffer<double, GpuDevice> product;
 };
@@ -82,6 +84,7 @@ struct GpuState {
   std::multimap<std::size_t, void*> host_rooms;  ///< page-locked memory that nobody has, by its size [bytes]
   std::vector<cudaEvent_t> free_marks;           ///< events that nobody waits for
   Profile profile;
+  std::unique_ptr<StreamMemory> memory;
   std::unique_ptr<GpuScratch> scratch;
 };
 

@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory of the host that kernels can read and write: what is small comes and goes by a kernel there, without a copy
-// that the host would have to start.
+// Memory of the host that kernels can read and write: what is small comes and goes with the kernels that need or make
+// it, without a copy that the host would have to start.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <type_traits>
 #include <utility>
 
-#include "solver/parallel/for_each.hpp"
+#include "solver/parallel/device.hpp"
 
 namespace talus {
 namespace detail {
@@ -21,17 +20,10 @@ void give_back_host(const CpuDevice&, void* memory, std::size_t bytes) noexcept;
 void give_back_host(const GpuDevice& device, void* memory, std::size_t bytes) noexcept;
 }  // namespace detail
 
-/// One thread: one word.
-struct CopyWord {
-  const std::uint32_t* from;
-  std::uint32_t* to;
-  TALUS_HD void operator()(int i) const { to[i] = from[i]; }
-};
-
-/// An object on the host that kernels can copy from and to. What they write is there once the host has waited.
+/// An object on the host that kernels can read and write. What they write is there once the host has waited.
 template <class T, class Device>
 class HostRoom {
-  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint32_t) == 0);
+  static_assert(std::is_trivially_copyable_v<T>);
 
  public:
   explicit HostRoom(Device device)
@@ -42,17 +34,9 @@ class HostRoom {
   HostRoom& operator=(const HostRoom&) = delete;
   ~HostRoom() { detail::give_back_host(device_, object_, sizeof(T)); }
 
-  T& operator*() const { return *object_; }  ///< object, for the host
-  /// The method starts a copy of the object to the memory of the device.
-  void copy_to(T* memory) const { copy(object_, memory); }
-  /// The method starts a copy from the memory of the device to the object.
-  void copy_from(const T* memory) const { copy(memory, object_); }
+  T& operator*() const { return *object_; }  ///< object, at an address for host and kernels
 
  private:
-  void copy(const T* from, T* to) const {
-    for_each(device_, static_cast<int>(sizeof(T) / sizeof(std::uint32_t)),
-             CopyWord{reinterpret_cast<const std::uint32_t*>(from), reinterpret_cast<std::uint32_t*>(to)});
-  }
   Device device_;
   T* object_;
 };

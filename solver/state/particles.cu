@@ -31,15 +31,25 @@ struct GatherAll {
   }
 };
 
-/// The one of two kernels over many arrays that takes arrays of these numbers.
-template <template <class, std::size_t> class Kernel, class Real, std::size_t most_reals, std::size_t most_ints>
-Kernel<Real, most_reals>& one_for(const Real*, Kernel<Real, most_reals>& reals, Kernel<int, most_ints>&) {
-  return reals;
-}
-template <template <class, std::size_t> class Kernel, class Real, std::size_t most_reals, std::size_t most_ints>
-Kernel<int, most_ints>& one_for(const int*, Kernel<Real, most_reals>&, Kernel<int, most_ints>& ints) {
-  return ints;
-}
+/// The arrays of all fields that go into another order together: thirty kernels take longer than what they do.
+template <class Real>
+struct GatherFields {
+  GatherAll<Real, components_kept(false)> reals;
+  GatherAll<int, components_kept(true)> ints;
+  void add(const Real* from, Real* to) { add_to(reals, from, to); }
+  void add(const int* from, int* to) { add_to(ints, from, to); }
+  TALUS_HD void operator()(int p) const {
+    reals(p);
+    ints(p);
+  }
+
+ private:
+  template <class T, std::size_t most>
+  static void add_to(GatherAll<T, most>& all, const T* from, T* to) {
+    all.from[all.count] = from;
+    all.to[all.count++] = to;
+  }
+};
 
 template <class Number, class Device, class Value>
 void upload_list(Buffer<Number, Device>& to, const std::vector<Value>& from) {
@@ -163,45 +173,35 @@ struct MarkLong {
   }
 };
 
-/// The places of the copies of marked points: the marks before each point, and all of them.
-struct CopyPlaces {
-  const int* before;
-  int count, more;
-  TALUS_HD bool marked(int p) const { return (p + 1 < count ? before[p + 1] : more) > before[p]; }
-  TALUS_HD int operator[](int p) const { return count + before[p]; }
-};
-
-/// One thread: one point. A marked one is copied in all arrays: thirty kernels take longer than what they do.
-template <class T, std::size_t most>
-struct CopyMarked {
-  CopyPlaces places;
-  int count = 0;
-  T* arrays[most] = {};
+/// One thread: one point. The order of the points as they are, and behind them the marked ones once more.
+struct NameTwice {
+  const int* upto;  ///< marked points up to each
+  int count;
+  int* order;
   TALUS_HD void operator()(int p) const {
-    if (!places.marked(p)) return;
-    const int copy = places[p];
-    for (int n = 0; n < count; ++n) arrays[n][copy] = arrays[n][p];
+    order[p] = p;
+    if (upto[p] > (p > 0 ? upto[p - 1] : 0)) order[count + upto[p] - 1] = p;
   }
 };
 
-/// One thread: one point. A marked one and its copy become halves, whose middles lie a quarter of the side from its
-/// own, and at most half a cell: further away its velocity gradient says nothing, and would make energy of a side that
-/// grew in flight.
+/// One thread: one of the points that stand twice. It and its copy become halves, whose middles lie a quarter of the
+/// side from its own, and at most half a cell: further away its velocity gradient says nothing, and would make energy
+/// of a side that grew in flight.
 template <class Real>
 struct Halve {
   GridView<Real> grid;
   ParticleView<Real> points;
-  CopyPlaces places;
+  const int* marked;  ///< their places
+  int copies;         ///< place of the first one
   bool affine;
 
-  TALUS_HD void operator()(int p) const {
-    if (!places.marked(p)) return;
+  TALUS_HD void operator()(int n) const {
+    const int p = marked[n], copy = copies + n;
     const CellFrame<Real> frame(grid, points, p);
     Sides<Real> s = frame.sides_of(points, p);
     const Real length = Real(sqrt(dot(s.longer, s.longer)));
     const Vec3<Real> way = s.longer * (length > Real(2) ? Real(0.5) / length : Real(0.25));
     s.longer = s.longer * Real(0.5);
-    const int copy = places[p];
     for (const int q : {p, copy}) {
       points.volume[q] *= Real(0.5);
       points.piece[q] *= 2;
@@ -318,19 +318,15 @@ std::size_t Particles<Real, Device>::bytes() const {
 /// The method puts every array at once into a second set of them, in the new order.
 template <class Real, class Device>
 void Particles<Real, Device>::reorder_together(const Buffer<int, Device>& order, int count) {
-  GatherAll<Real, components_kept(false)> reals;
-  GatherAll<int, components_kept(true)> ints;
-  reals.order = ints.order = order.data();
+  GatherFields<Real> gather;
+  gather.reals.order = gather.ints.order = order.data();
   const auto add = [&](const ParticleField& field, int, auto& from, auto& to) {
     if (!sorts(field)) return;
     to.resize(static_cast<std::size_t>(count));
-    auto& gather = one_for(to.data(), reals, ints);
-    gather.from[gather.count] = from.data();
-    gather.to[gather.count++] = to.data();
+    gather.add(from.data(), to.data());
   };
   visit_particle_fields(add, arrays_, twins_);
-  for_each(device_, count, reals);
-  for_each(device_, count, ints);
+  for_each(device_, count, gather);
   const auto swap = [&](const ParticleField& field, int, auto& array, auto& twin) {
     if (sorts(field)) array.swap(twin);
   };
@@ -367,24 +363,16 @@ bool Particles<Real, Device>::split(const GridView<Real>& grid, const std::uint6
   Buffer<int, Device>& marks = int_scratch_;
   marks.resize(static_cast<std::size_t>(before));
   for_each(device_, before, MarkLong<Real>{grid, view(), keys, marks.data()});
-  const int more = exclusive_sum(device_, marks.data(), marks.data(), before);
+  const int more = inclusive_sum(device_, marks.data(), marks.data(), before);
   if (more == 0) return false;
-  const CopyPlaces places{marks.data(), before, more};
-  CopyMarked<Real, components_kept(false)> reals{places};
-  CopyMarked<int, components_kept(true)> ints{places};
-  const auto add = [&](const ParticleField& field, int, auto& array) {
-    if (!holds(field)) return;
-    const auto all = static_cast<std::size_t>(before + more);
-    if (field.kept == Kept::within_step) return array.resize(all);
-    grow(array, all);
-    auto& copies = one_for(array.data(), reals, ints);
-    copies.arrays[copies.count++] = array.data();
+  Buffer<int, Device> order(device_, static_cast<std::size_t>(before + more));
+  for_each(device_, before, NameTwice{marks.data(), before, order.data()});
+  reorder(order, before + more);
+  const auto fit = [&](const ParticleField& field, int, auto& array) {
+    if (holds(field) && !sorts(field)) array.resize(static_cast<std::size_t>(count_));
   };
-  visit_particle_fields(add, arrays_);
-  for_each(device_, before, reals);
-  for_each(device_, before, ints);
-  count_ += more;
-  for_each(device_, before, Halve<Real>{grid, view(), places, needs_.affine_transfer});
+  visit_particle_fields(fit, arrays_);
+  for_each(device_, more, Halve<Real>{grid, view(), order.data() + before, before, needs_.affine_transfer});
   return true;
 }
 

@@ -314,7 +314,8 @@ class Particles {
   /// of the points' cells (home_key()), by which they are sorted; the halves are not.
   bool split(const GridView<Real>& grid, const std::uint64_t* keys);
 
-  /// The method puts the points in a new order: point order[p] becomes point p; only the first `count` are kept.
+  /// The method puts the points in a new order of `count`: point order[p] becomes point p, also where it is named twice
+  /// or the order does not name all.
   void reorder(const Buffer<int, Device>& order, int count);
 
  private:

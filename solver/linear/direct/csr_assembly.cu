@@ -55,7 +55,7 @@ int CsrAssembly<Real, Device, Shape>::number_nodes(const HeldNodes& nodes) {
   numbers_.flags.swap(numbers_.new_flags);
   numbers_.number_of.resize(numbers_.flags.size());
   numbers_.node_of.resize(numbers_.flags.size());
-  unknown_ = exclusive_sum(device_, numbers_.flags.data(), numbers_.number_of.data(), nodes.count);
+  unknown_ = inclusive_sum(device_, numbers_.flags.data(), numbers_.number_of.data(), nodes.count);
   for_each(device_, nodes.count,
            MapUnknowns{numbers_.flags.data(), numbers_.number_of.data(), numbers_.node_of.data()});
   return unknown_;

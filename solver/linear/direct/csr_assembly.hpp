@@ -158,11 +158,11 @@ struct FlagUnknowns {
 /// One thread: one node. It fills the two lists: node to unknown (-1: none) and unknown to node.
 struct MapUnknowns {
   const int* flags;
-  int* number_of;  ///< in: unknowns before this node
+  int* number_of;  ///< in: unknowns up to this node
   int* node_of;
   TALUS_HD void operator()(int n) const {
     if (flags[n] != 0) {
-      node_of[number_of[n]] = n;
+      node_of[--number_of[n]] = n;
     } else {
       number_of[n] = -1;
     }

@@ -86,10 +86,17 @@ Clock after_a_step() {
   return clock;
 }
 
+/// Opens the next step, or none; returns what the host was given, a clock of no step where that was nothing.
+Clock open_step(Clock& clock) {
+  Clock room;
+  OpenStep{&clock, &clock, &room}();
+  return room;
+}
+
 TEST(OpenStep, opens_the_steps_of_a_batch_and_no_more) {
   Clock clock = after_a_step();
   clock.steps_ahead = 2;
-  for (int n = 0; n < 4; ++n) OpenStep{&clock}();
+  for (int n = 0; n < 4; ++n) open_step(clock);
   EXPECT_EQ(clock.step, 2);
   EXPECT_EQ(clock.time, 0.75);
   EXPECT_EQ(clock.steps_ahead, 0);
@@ -97,12 +104,30 @@ TEST(OpenStep, opens_the_steps_of_a_batch_and_no_more) {
   EXPECT_EQ(clock.motion_maps.is_due, 0) << "the last step has recorded what it summed up";
 }
 
+TEST(OpenStep, gives_the_clock_to_the_host_where_it_opens_none) {
+  Clock clock = after_a_step();
+  clock.steps_ahead = 1;
+  EXPECT_EQ(open_step(clock).step, 0);
+  EXPECT_EQ(open_step(clock).step, 1) << "the last step is closed";
+  clock.alarms.halt = wants_sort;
+  clock.steps_ahead = 1;
+  EXPECT_EQ(open_step(clock).step, 1) << "it had halted before";
+}
+
+TEST(OpenStep, takes_the_clock_from_elsewhere_as_a_batch_begins) {
+  Clock lent = after_a_step(), clock, room;
+  lent.steps_ahead = 1;
+  OpenStep{&lent, &clock, &room}();
+  EXPECT_EQ(clock.step, 1);
+  EXPECT_EQ(lent.step, 0);
+}
+
 TEST(OpenStep, halts_at_an_event_whether_or_not_steps_are_left) {
   for (const int left : {0, 3}) {
     Clock clock = after_a_step();
     clock.steps_ahead = left;
     clock.time = clock.next_event;
-    OpenStep{&clock}();
+    open_step(clock);
     EXPECT_EQ(clock.alarms.halt, at_event);
     EXPECT_EQ(clock.step, 0);
   }
@@ -112,7 +137,7 @@ TEST(OpenStep, leaves_a_batch_alone_that_has_halted) {
   Clock clock = after_a_step();
   clock.steps_ahead = 3;
   clock.alarms.halt = wants_sort;
-  OpenStep{&clock}();
+  open_step(clock);
   EXPECT_EQ(clock.step, 0);
   EXPECT_EQ(clock.steps_ahead, 3);
 }
@@ -121,7 +146,7 @@ TEST(OpenStep, halts_for_a_sort_or_a_failure_that_the_last_step_asked_for) {
   for (const int request : {wants_sort, failed}) {
     Clock clock = after_a_step();
     clock.alarms.request = request;
-    OpenStep{&clock}();
+    open_step(clock);
     EXPECT_EQ(clock.alarms.halt, request);
   }
 }

@@ -73,7 +73,7 @@ TEST_P(BufferOn, takes_an_eighth_more_than_asked_for_once_it_grows) {
   });
 }
 
-TEST(Sorting, is_stable_and_sums_are_exclusive_on_the_cpu) {
+TEST(Sorting, is_stable_and_sums_are_inclusive_on_the_cpu) {
   std::mt19937 engine(5);
   std::vector<std::uint64_t> keys(10000);
   for (auto& key : keys) key = engine() % 97;
@@ -89,8 +89,8 @@ TEST(Sorting, is_stable_and_sums_are_exclusive_on_the_cpu) {
   EXPECT_EQ(order.download(), expected);
   const std::vector<int> values{3, 0, 5, 1};
   std::vector<int> sums(4);
-  EXPECT_EQ(exclusive_sum(device, values.data(), sums.data(), 4), 9);
-  EXPECT_EQ(sums, (std::vector<int>{0, 3, 3, 8}));
+  EXPECT_EQ(inclusive_sum(device, values.data(), sums.data(), 4), 9);
+  EXPECT_EQ(sums, (std::vector<int>{3, 3, 8, 9}));
 }
 
 constexpr int count = 10000;

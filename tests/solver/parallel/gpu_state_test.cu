@@ -14,17 +14,16 @@ class GpuStates : public InEachPlace {};
 
 TEST_P(GpuStates, lend_memory_that_was_given_back_before_they_take_more) {
 #if TALUS_FOR_GPU
-  BorrowedMemory memory(GpuDevice::make());
-  char* const first = memory.allocate(1000);
-  char* const second = memory.allocate(1000);
-  EXPECT_NE(first, second);
-  memory.deallocate(first, 1000);
-  EXPECT_EQ(memory.allocate(900), first) << "it is large enough, and not four times as large";
-  memory.deallocate(first, 900);
-  char* const small = memory.allocate(100);
-  EXPECT_NE(small, first) << "it is more than four times as large";
-  memory.deallocate(small, 100);
-  memory.deallocate(second, 1000);
+  const GpuDevice device = GpuDevice::make();
+  const auto address_of = [&](std::size_t bytes) { return Buffer<char, GpuDevice>(device, bytes).data(); };
+  const Buffer<char, GpuDevice> held(device, 10000);
+  const char* const first = address_of(10000);
+  EXPECT_NE(first, held.data());
+  EXPECT_EQ(address_of(9500), first) << "the size that both are rounded up to is the same";
+  EXPECT_NE(address_of(5000), first) << "half of it would lie idle";
+  const std::size_t large = StreamMemory::most_kept + 1;
+  EXPECT_NE(address_of(large), nullptr);
+  EXPECT_NE(address_of(large), nullptr);
 #endif
 }
 

@@ -70,17 +70,21 @@ struct Numbers {
   std::uint32_t last;
 };
 
+struct CopyNumbers {
+  const Numbers* from;
+  Numbers* to;
+  TALUS_HD void operator()(int) const { *to = *from; }
+};
+
 class HostRooms : public OnEachDevice {};
 
-TEST_P(HostRooms, bring_an_object_to_the_device_and_back) {
+TEST_P(HostRooms, are_read_and_written_by_kernels) {
   on_device([](const auto& device) {
     using Device = std::decay_t<decltype(device)>;
     HostRoom<Numbers, Device> in(device), out(device);
     EXPECT_EQ((*in).first, 0) << "it is empty to begin with";
-    Buffer<Numbers, Device> there(device, 1);
     *in = {2.5, {1, 2, 3}, 7};
-    in.copy_to(there.data());
-    out.copy_from(there.data());
+    for_each(device, 1, CopyNumbers{&*in, &*out});
     synchronise(device);
     EXPECT_EQ((*out).first, 2.5);
     EXPECT_EQ((*out).rest[2], 3);

@@ -17,7 +17,7 @@ constexpr Sym3<double> freely{1, 1, 1, 0, 0, 0}, held{};
 struct FourNodes {
   std::vector<double> mass{2, 2, 0, 2};
   std::vector<Sym3<double>> freed{freely, held, freely, freely};
-  std::vector<int> flags = std::vector<int>(4), number_of{0, 1, 1, 1}, node_of = std::vector<int>(2, -1);
+  std::vector<int> flags = std::vector<int>(4), number_of{1, 1, 1, 2}, node_of = std::vector<int>(2, -1);
   FourNodes() {
     for (int n = 0; n < 4; ++n) FlagUnknowns{mass.data(), freed.data(), flags.data()}(n);
     for (int n = 0; n < 4; ++n) MapUnknowns{flags.data(), number_of.data(), node_of.data()}(n);
