@@ -42,7 +42,7 @@ struct InFlight {
 };
 
 /// The most members that a GPU runs at a time: more gain nothing (docs/notes/ensembles.md).
-inline constexpr int most_on_a_gpu = 48;
+inline constexpr int most_on_a_gpu = 16;
 
 /// Of `members` that need so many bytes each: on the CPU one for every thread of this process, on GPUs most_on_a_gpu
 /// for each GPU, or as many as are `asked` for where that is not 0; never more than memory has room for. `devices` are
