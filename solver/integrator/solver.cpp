@@ -34,7 +34,7 @@ ParticleState at_home(const SolverState& state, int columns) {
       points.offset[a][p] = (key >> a & 1) != 0 ? 0.25 : -0.25;  // the halves of a cell that home_key() tells apart
     }
   }
-  for (auto& side : points.sides) side.assign(points.size(), 0);  // none is split that was not then
+  for (auto& side : points.sides) side.clear();  // none is split that was not then
   return points;
 }
 

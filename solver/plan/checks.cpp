@@ -52,7 +52,7 @@ void judge_weight(const Scene& scene, const SolveOptions& o) {
   const double g = o.gravity_size();
   const double area = scene.grid.spacing * scene.grid.spacing;
   const ParticleState& s = scene.points;
-  const auto material_of = [&](std::size_t p) { return materials[static_cast<std::size_t>(s.material[p])]; };
+  const auto material_of = [&](std::size_t p) { return materials[s.material_of(p)]; };
   std::vector<ColumnLoad> columns(scene.map.count());
   for (std::size_t p = 0; p < s.size(); ++p) {
     ColumnLoad& column = columns[scene.map.index(s.cell[0][p], s.cell[1][p])];

@@ -15,9 +15,8 @@ namespace {
 void take_strains(const ParticleState& loaded, const SolveOptions& options, ParticleState& start) {
   for (std::size_t q = 0; q < loaded.size(); ++q) {
     const auto p = static_cast<std::size_t>(loaded.id[q]);
-    const int material = start.material[p];
-    const MaterialOptions& own =
-        material > 0 ? options.parts[static_cast<std::size_t>(material) - 1].material : options.material;
+    const std::size_t material = start.material_of(p);
+    const MaterialOptions& own = material > 0 ? options.parts[material - 1].material : options.material;
     const auto& e = loaded.elastic;
     const Sym3<double> kept = after_loading(own.model, {e[0][q], e[1][q], e[2][q], e[3][q], e[4][q], e[5][q]});
     const double values[6] = {kept.xx, kept.yy, kept.zz, kept.xy, kept.yz, kept.xz};

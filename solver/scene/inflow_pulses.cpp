@@ -261,9 +261,7 @@ void InflowSeeder::add_point(const Strip& strip, double way, double height, Infl
   const CellPlace at{strip.middle[0] + way / shape.spacing * line_.ahead[0],
                      strip.middle[1] + way / shape.spacing * line_.ahead[1]};
   const std::size_t p = s.size();
-  const auto add = [](const ParticleField& field, int, auto& list) {
-    if (!may_be_empty(field)) list.push_back(field.initial);
-  };
+  const auto add = [](const ParticleField& field, int, auto& list) { list.push_back(field.initial); };
   visit_particle_fields(add, s);
   place_in_cells(at[0], s.cell[0][p], s.offset[0][p]);
   place_in_cells(at[1], s.cell[1][p], s.offset[1][p]);

@@ -3,11 +3,13 @@
 #include "solver/scene/make_scene.hpp"
 #include "common/run/mobility.hpp"
 #include "common/stage/stage.hpp"
+#include "solver/parallel/for_each.hpp"
 #include "solver/scene/make_inflow.hpp"
 #include "solver/scene/settings.hpp"
 #include "solver/scene/tables.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -25,6 +27,7 @@ constexpr double explicit_lowest_weighed = 0.1, newmark_lowest_weighed = 0.01;
 
 /// Marks the points that start inside a load's box.
 void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
+  if (!options.loads.empty()) scene.points.load.assign(scene.points.size(), -1);
   for (std::size_t l = 0; l < options.loads.size(); ++l) {
     const auto& b = options.loads[l].extent;
     double volume = 0;
@@ -43,6 +46,7 @@ void attach_loads(const Domain& domain, const SolveOptions& options, Scene& scen
 }
 
 void attach_materials(const SolveOptions& options, Scene& scene, std::vector<Fault>& faults) {
+  if (!options.parts.empty()) scene.points.material.assign(scene.points.size(), 0);
   for (std::size_t part = 0; part < options.parts.size(); ++part) {
     const std::string& name = options.parts[part].release;
     bool found = false;
@@ -120,17 +124,19 @@ void check_bed(const Domain& domain, const SolveOptions& options, std::vector<Fa
   }
 }
 
-/// Throws DataError unless a point lies over known ground, and in an active cell of the grid that was made for it.
-void check_place(const Domain& domain, const TerrainTables& terrain, const ActiveCells& active, std::size_t p) {
-  const auto cell = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
-  const auto [i, j, layer] = cell;
-  const bool inside = i >= 0 && j >= 0 && i < domain.grid.columns && j < domain.grid.rows;
-  if (!inside || !terrain.open[domain.grid.index(i, j)])
+/// Whether a point lies over known ground.
+bool stands_on_ground(const Domain& domain, const TerrainTables& terrain, int i, int j) {
+  return i >= 0 && j >= 0 && i < domain.grid.columns && j < domain.grid.rows && terrain.open[domain.grid.index(i, j)];
+}
+
+/// Throws DataError: a point lies over no known ground, or in no active cell of the grid that was made for it.
+[[noreturn]] void refuse_place(const Domain& domain, const TerrainTables& terrain, std::size_t p) {
+  const auto [i, j, layer] = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
+  if (!stands_on_ground(domain, terrain, i, j))
     throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}) stands outside the ground or at its edge", p,
                                  domain.points.x[p], domain.points.y[p]),
                      "a point needs known ground one cell around it",
                      "Give a larger elevation model, or a smaller source, and run talus-preprocess again"});
-  if (active.holds(cell)) return;
   throw DataError({fmt::format("domain.vdb: point {} at ({:.2f}, {:.2f}), {:.2f} m above the bed, lies in column {}, "
                                "row {}, layer {}, which is no active cell of the background grid",
                                p, domain.points.x[p], domain.points.y[p], domain.points.height[p], i, j, layer),
@@ -143,8 +149,16 @@ ParticleState place_points(const Domain& domain, const SolveOptions& options, co
   ParticleState s;
   const std::size_t count = domain.points.size();
   s.resize(count);
-  for (std::size_t p = 0; p < count; ++p) {
-    check_place(domain, terrain, active, p);
+  for (auto& list : s.extent) list.resize(count);
+  for (auto& list : s.sides) list.resize(count);
+  std::atomic<std::size_t> misplaced = count;  // the first one
+  const auto place = [&](int n) {
+    const auto p = static_cast<std::size_t>(n);
+    const auto cell = nearest_cell(domain.grid, domain.layer_height, domain.points, p);
+    if (!stands_on_ground(domain, terrain, cell[0], cell[1]) || !active.holds(cell)) {
+      for (std::size_t first = misplaced; p < first && !misplaced.compare_exchange_weak(first, p);) continue;
+      return;
+    }
     const double xi = (domain.points.x[p] - domain.grid.west) / shape.spacing - 0.5;
     const double eta = (domain.points.y[p] - domain.grid.south) / shape.spacing - 0.5;
     place_in_cells(xi, s.cell[0][p], s.offset[0][p]);
@@ -159,9 +173,11 @@ ParticleState place_points(const Domain& domain, const SolveOptions& options, co
     s.extent[1][p] = deep / shape.spacing;
     s.extent[2][p] = s.volume[p] / (wide * deep * shape.layer_height);
     lay_sides(s, p, shape, terrain, wide, deep);
-    s.id[p] = static_cast<int>(p);
+    s.id[p] = n;
     s.release[p] = domain.points.release[p];
-  }
+  };
+  for_each(CpuDevice::make(), static_cast<int>(count), place);
+  if (misplaced < count) refuse_place(domain, terrain, misplaced);
   return s;
 }
 

@@ -258,6 +258,8 @@ void Particles<Real, Device>::upload(const ParticleState& state) {
     if (!holds(field)) return;
     if (field.kept == Kept::within_step) {
       array.resize(state.size());
+    } else if (list.empty() && field.initial == 0) {
+      array.resize_zeroed(state.size());
     } else if (may_be_empty(field) && list.empty()) {
       upload_list(array, std::decay_t<decltype(list)>(state.size(), field.initial));
     } else {
@@ -287,12 +289,7 @@ void Particles<Real, Device>::append(const ParticleState& more) {
 template <class Real, class Device>
 void Particles<Real, Device>::download(Kept least, ParticleState& to) const {
   const auto download_one = [&](const ParticleField& field, int, const auto& array, auto& list) {
-    if (field.kept < least) return;
-    if (holds(field)) {
-      download_list(array, list);
-    } else if (!may_be_empty(field)) {
-      list.assign(static_cast<std::size_t>(count_), field.initial);
-    }
+    if (field.kept >= least && holds(field)) download_list(array, list);
   };
   visit_particle_fields(download_one, arrays_, to);
 }

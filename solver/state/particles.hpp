@@ -122,8 +122,8 @@ struct ParticleField {
   }
 };
 
-/// Whether the host keeps no list of a field while it holds nothing but its initial value: most runs have no water.
-constexpr bool may_be_empty(const ParticleField& field) { return field.needed_by == &ParticleNeeds::water; }
+/// Whether the host may go without a list of a field: what not every run needs is mostly the initial value everywhere.
+constexpr bool may_be_empty(const ParticleField& field) { return field.needed_by != &ParticleNeeds::always; }
 
 /// The table.
 inline constexpr ParticleField particle_fields[] = {
@@ -277,7 +277,7 @@ struct ParticleView {
 };
 
 /// A copy of the points on the host, in double; lists of one length, or empty where they were not asked for, or where
-/// they may_be_empty().
+/// they may_be_empty() and all points have the initial value.
 struct ParticleState {
   using Ints = std::vector<int>;
   using Reals = std::vector<double>;
@@ -285,6 +285,8 @@ struct ParticleState {
 
   std::size_t size() const { return id.size(); }  ///< number of points
   void resize(std::size_t count);                 ///< makes room for `count` points at their initial values
+  /// The material of point p.
+  std::size_t material_of(std::size_t p) const { return material.empty() ? 0 : static_cast<std::size_t>(material[p]); }
 };
 
 /// The owner of the points' arrays on a device.
@@ -296,7 +298,7 @@ class Particles {
   /// The method takes the lists of the fields that are needed; those kept within a step alone get memory.
   void upload(const ParticleState& state);
   void append(const ParticleState& more);  ///< adds points behind those that are there
-  /// The fields that are kept at least so long, in double; those that are not needed have their initial value.
+  /// The fields that are kept at least so long, in double; lists of those that are not needed are empty.
   ParticleState download(Kept least = Kept::in_checkpoint) const {
     ParticleState state;
     download(least, state);

@@ -14,7 +14,7 @@ struct Parts {
 
 /// The smallest parts that point p holds.
 inline Parts parts_of(const ParticleState& points, std::size_t p) {
-  const PartRange range(points.piece[p]);
+  const PartRange range(points.piece.empty() ? 1 : points.piece[p]);
   return {smallest_parts * static_cast<std::size_t>(points.id[p]) + static_cast<std::size_t>(range.first),
           static_cast<std::size_t>(range.count)};
 }

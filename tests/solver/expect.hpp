@@ -29,11 +29,22 @@ std::vector<Fault> faults_of(Call&& call) {
   return {};
 }
 
+/// The points with lists of what is the initial value everywhere, too.
+inline ParticleState with_all_lists(ParticleState points) {
+  visit_particle_fields(
+      [&](const ParticleField& field, int, auto& list) {
+        if (list.empty()) list.assign(points.size(), field.initial);
+      },
+      points);
+  return points;
+}
+
 /// All that two lists of points hold is the same, bit for bit.
 inline void expect_same_points(const ParticleState& a, const ParticleState& b) {
+  const ParticleState all = with_all_lists(a), others = with_all_lists(b);
   visit_particle_fields([](const ParticleField& field, int component, const auto& list,
                            const auto& other) { EXPECT_EQ(list, other) << field.name_of(component); },
-                        a, b);
+                        all, others);
 }
 
 }  // namespace talus::solver::testing

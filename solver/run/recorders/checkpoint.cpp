@@ -106,8 +106,6 @@ class ItemReader {
   std::string group_;
 };
 
-bool is_optional(const ParticleField& field) { return field.needed_by != &ParticleNeeds::always; }
-
 /// Whether a list says more than that every value is the initial one; -0 is not 0.
 bool tells(const std::vector<int>& list, int initial) {
   return std::ranges::any_of(list, [&](int value) { return value != initial; });
@@ -121,7 +119,7 @@ bool tells(const std::vector<double>& list, int initial) {
 void write_points(h5::File& file, const SolverState& state) {
   const ItemWriter items(file, points_group);
   visit_points(state.points, [&](const ParticleField& field, const std::string& name, const auto& list) {
-    if (!is_optional(field) || tells(list, field.initial)) items(name, list);
+    if (!may_be_empty(field) || tells(list, field.initial)) items(name, list);
   });
   if (!state.homes.empty()) file.write<std::int64_t>(home_path, dims_of(state.homes.size()), state.homes);
 }
@@ -129,13 +127,10 @@ void write_points(h5::File& file, const SolverState& state) {
 void read_points(const h5::File& file, SolverState& state) {
   const ItemReader items(file, points_group);
   const auto lacks = [&](const ParticleField& field, const std::string& name) {
-    return is_optional(field) && !file.exists(std::string(points_group) + "/" + name);
+    return may_be_empty(field) && !file.exists(std::string(points_group) + "/" + name);
   };
   visit_points(state.points, [&](const ParticleField& field, const std::string& name, auto& list) {
     if (!lacks(field, name)) items(name, list);
-  });
-  visit_points(state.points, [&](const ParticleField& field, const std::string&, auto& list) {
-    if (is_optional(field) && list.empty() && !may_be_empty(field)) list.assign(state.points.size(), field.initial);
   });
   if (file.exists(home_path)) state.homes = file.read_list<std::int64_t>(home_path);
 }

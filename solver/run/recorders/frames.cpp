@@ -35,6 +35,12 @@ void round(PointFrame& frame, const GridShape& grid) {
   for (float& p : frame.pressure) p = rounded(p);
 }
 
+/// A list as kernels see it: null where there is none.
+template <class Number>
+const Number* list_of(const std::vector<Number>& list) {
+  return list.empty() ? nullptr : list.data();
+}
+
 }  // namespace
 
 PointFrame point_frame(const Scene& scene, const SolveOptions& options, double time, const ParticleState& s) {
@@ -49,10 +55,9 @@ PointFrame point_frame(const Scene& scene, const SolveOptions& options, double t
     const MaterialState<double> state{
         {s.elastic[0][p], s.elastic[1][p], s.elastic[2][p], s.elastic[3][p], s.elastic[4][p], s.elastic[5][p]},
         s.log_volume[p],
-        s.plastic_log_volume[p]};
-    frame.pressure.push_back(static_cast<float>(
-        -trace(kirchhoff_stress(materials.of(s.material.data(), s.plastic_shear.data(), static_cast<int>(p)), state)) /
-        3));
+        s.plastic_log_volume.empty() ? 0 : s.plastic_log_volume[p]};
+    const auto material = materials.of(list_of(s.material), list_of(s.plastic_shear), static_cast<int>(p));
+    frame.pressure.push_back(static_cast<float>(-trace(kirchhoff_stress(material, state)) / 3));
   }
   frame.id = s.id;
   frame.release = s.release;

@@ -100,7 +100,7 @@ double GaugeRecorder::speed_at(const Site& site, const ParticleState& points) co
     const double x = std::abs(points.cell[0][p] + points.offset[0][p] - site.xi);
     const double y = std::abs(points.cell[1][p] + points.offset[1][p] - site.eta);
     if (x >= 1 || y >= 1) continue;
-    const double density = densities_[static_cast<std::size_t>(points.material[p])];
+    const double density = densities_[points.material_of(p)];
     const double share = (1 - x) * (1 - y) * points.volume[p] * density;
     mass += share;
     momentum += Vec3<double>{points.velocity[0][p], points.velocity[1][p], points.velocity[2][p]} * share;

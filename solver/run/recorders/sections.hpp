@@ -86,7 +86,7 @@ class SectionRecorder : public TableRecorder<SectionReading> {
   void measure_speed(const Line& line, const ParticleState& points, SectionReading& reading) const;
   void count_unseen(const Line& line, const Moment& moment, SectionReading& reading) const;
   double mass_of(const ParticleState& points, std::size_t p) const {
-    return points.volume[p] * densities_[static_cast<std::size_t>(points.material[p])];
+    return points.volume[p] * densities_[points.material_of(p)];
   }
 
   MapGrid map_;

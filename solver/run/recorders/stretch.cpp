@@ -72,7 +72,7 @@ std::vector<Overstretched> StretchRecorder::samples(const Instant& now) const {
   Overstretched found;
   double largest = 0;  // logarithmic
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const Limits& limits = limits_[static_cast<std::size_t>(points.material[p])];
+    const Limits& limits = limits_[points.material_of(p)];
     if (points.cell[0][p] < 0 || !limits.elastic) continue;
     const auto& e = points.elastic;
     const Sym3<double> strain{e[0][p], e[1][p], e[2][p], e[3][p], e[4][p], e[5][p]};

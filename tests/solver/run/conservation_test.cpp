@@ -101,6 +101,7 @@ TEST_P(Conservation, spins_an_elastic_body_without_loss_of_angular_momentum) {
     SolveOptions o = options();
     o.transfer_time = transfer_time;
     Scene scene = make_scene(cube(), o);
+    scene.points = with_all_lists(scene.points);
     constexpr double spin = 2;  // about z [rad/s]
     for (std::size_t p = 0; p < scene.points.size(); ++p) {
       const double x = scene.points.cell[0][p] + scene.points.offset[0][p] - 10.5;
@@ -176,6 +177,7 @@ struct LinearVelocity {
   double cell[3] = {1.0, 1.0, 0.5};                                                          // [m]
 
   void give_to(ParticleState& points) const {
+    points = with_all_lists(points);
     for (std::size_t p = 0; p < points.size(); ++p) {
       for (int a = 0; a < 3; ++a) {
         double v = 0;

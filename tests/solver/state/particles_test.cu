@@ -96,7 +96,7 @@ TEST(ParticleTable, points_start_at_the_initial_values) {
   expect_fields(
       state, state, Kept::within_step, 2,
       [](const ParticleField& field, const auto&, std::size_t) { return field.initial; }, nothing_more);
-  EXPECT_EQ(state.load, (std::vector<int>{-1, -1}));
+  EXPECT_TRUE(state.load.empty()) << "not every run has loads";
 }
 
 TEST(ParticleTable, places_are_what_a_kernel_moves_of_a_position) {

@@ -7,6 +7,7 @@
 
 #include "solver/state/particles.hpp"
 #include "solver/state/sides.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus {
@@ -45,6 +46,7 @@ struct TiltedGrid {
 ParticleState point(int i, double along_x, double along_y) {
   ParticleState s;
   s.resize(1);
+  s = solver::testing::with_all_lists(s);
   s.cell[0][0] = i;
   s.cell[1][0] = 5;
   s.offset[2][0] = 0.5;

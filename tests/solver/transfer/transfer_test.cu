@@ -7,6 +7,7 @@
 #include "solver/integrator/scene.hpp"
 #include "solver/transfer/grid_to_particle.hpp"
 #include "solver/transfer/particle_to_grid.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver::testing {
@@ -43,6 +44,7 @@ class Transfers : public InEachPlace {
     SolveOptions o;
     o.shape = shape;
     Scene s = make_scene(d, o);
+    s.points = with_all_lists(s.points);
     std::mt19937 engine(11);
     std::uniform_real_distribution<double> u(-1, 1);
     for (std::size_t p = 0; p < s.points.size(); ++p) {

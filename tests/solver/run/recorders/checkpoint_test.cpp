@@ -11,6 +11,7 @@
 #include "solver/boundary/contact_points.hpp"
 #include "solver/state/particles.hpp"
 #include "tests/common/scratch.hpp"
+#include "tests/solver/expect.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus::solver {
@@ -139,15 +140,6 @@ TEST(Checkpoint, every_scalar_comes_back_bit_for_bit) {
   EXPECT_EQ(std::bit_cast<std::uint64_t>(back.state.contacts.impulse[0]), std::bit_cast<std::uint64_t>(-0.0));
 }
 
-void expect_same_points(const ParticleState& a, const ParticleState& b) {
-  visit_particle_fields(
-      [](const ParticleField& field, int component, const auto& list, const auto& other) {
-        EXPECT_EQ(list, other) << field.name_of(component);
-        EXPECT_EQ(list.empty(), field.kept == Kept::within_step || may_be_empty(field)) << field.name_of(component);
-      },
-      a, b);
-}
-
 /// Sand that slides out of the domain.
 struct Sliding {
   static constexpr double event = 10;  ///< to which steps are even [s]
@@ -174,7 +166,7 @@ struct Sliding {
     const Checkpoint back = read_checkpoint(scratch / "checkpoint.h5", "fingerprint");
     check_checkpoint(scratch / "checkpoint.h5", back, scene);
     EXPECT_EQ(back.state.homes, state.homes);
-    expect_same_points(back.state.points, state.points);
+    testing::expect_same_points(back.state.points, state.points);
     return back.state;
   }
 };
@@ -218,7 +210,7 @@ TEST(Checkpoint, a_run_goes_on_from_a_file_bit_for_bit) {
       testing::run_to(*solver, end);
       const SolverState other = solver->state();
       EXPECT_EQ(clock_bits(other.clock), clock_bits(one.clock));
-      expect_same_points(other.points, one.points);
+      testing::expect_same_points(other.points, one.points);
       EXPECT_EQ(other.maps.peak_speed, one.maps.peak_speed);
     }
   }
@@ -303,6 +295,7 @@ TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it)
   const auto fault_with = [&](const auto& change) {
     Checkpoint c;
     c.state = first_state(scene, make_settings(options, scene.grid).common);
+    c.state.points = testing::with_all_lists(c.state.points);
     c.memory.initial_thickness.assign(scene.map.count(), 0.0);
     change(c);
     return fault_of<DataError>([&] { check_checkpoint("c.h5", c, scene); });
