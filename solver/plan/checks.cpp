@@ -53,6 +53,8 @@ void judge_weight(const Scene& scene, const SolveOptions& o) {
   const double area = scene.grid.spacing * scene.grid.spacing;
   const ParticleState& s = scene.points;
   const auto material_of = [&](std::size_t p) { return materials[s.material_of(p)]; };
+  std::vector<double> moduli;
+  for (const MaterialOptions* m : materials) moduli.push_back(confined_modulus(*m));
   std::vector<ColumnLoad> columns(scene.map.count());
   for (std::size_t p = 0; p < s.size(); ++p) {
     ColumnLoad& column = columns[scene.map.index(s.cell[0][p], s.cell[1][p])];
@@ -62,7 +64,7 @@ void judge_weight(const Scene& scene, const SolveOptions& o) {
   double strain = 0, pressure = 0, thickness = 0, modulus = 0;
   for (std::size_t p = 0; p < s.size(); ++p) {
     const ColumnLoad& column = columns[scene.map.index(s.cell[0][p], s.cell[1][p])];
-    const double here = column.mass * g / area, strain_here = here / confined_modulus(*material_of(p));
+    const double here = column.mass * g / area, strain_here = here / moduli[s.material_of(p)];
     if (!(strain_here > strain)) continue;
     strain = strain_here;
     pressure = here;
