@@ -32,10 +32,6 @@ void keep_memory(int gpu) {
   check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "memory pool");
 }
 
-}  // namespace
-
-namespace {
-
 /// The size of memory that is kept by size [bytes]: a quarter of a power of two more at most.
 std::size_t rounded_up(std::ptrdiff_t bytes) {
   const auto size = static_cast<std::size_t>(std::max<std::ptrdiff_t>(bytes, 1024)), part = std::bit_floor(size) / 4;

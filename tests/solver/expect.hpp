@@ -33,7 +33,7 @@ std::vector<Fault> faults_of(Call&& call) {
 inline ParticleState with_all_lists(ParticleState points) {
   visit_particle_fields(
       [&](const ParticleField& field, int, auto& list) {
-        if (list.empty()) list.assign(points.size(), field.initial);
+        if (list.empty() && may_be_empty(field)) list.assign(points.size(), field.initial);
       },
       points);
   return points;
@@ -42,9 +42,12 @@ inline ParticleState with_all_lists(ParticleState points) {
 /// All that two lists of points hold is the same, bit for bit.
 inline void expect_same_points(const ParticleState& a, const ParticleState& b) {
   const ParticleState all = with_all_lists(a), others = with_all_lists(b);
-  visit_particle_fields([](const ParticleField& field, int component, const auto& list,
-                           const auto& other) { EXPECT_EQ(list, other) << field.name_of(component); },
-                        all, others);
+  visit_particle_fields(
+      [&](const ParticleField& field, int component, const auto& list, const auto& other) {
+        EXPECT_EQ(list, other) << field.name_of(component);
+        EXPECT_EQ(list.size(), all.size()) << field.name_of(component);
+      },
+      all, others);
 }
 
 }  // namespace talus::solver::testing

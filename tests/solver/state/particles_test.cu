@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "tests/solver/expect.hpp"
 #include "tests/solver/scenes.hpp"
 
 namespace talus {
@@ -97,6 +98,7 @@ TEST(ParticleTable, points_start_at_the_initial_values) {
       state, state, Kept::within_step, 2,
       [](const ParticleField& field, const auto&, std::size_t) { return field.initial; }, nothing_more);
   EXPECT_TRUE(state.load.empty()) << "not every run has loads";
+  EXPECT_EQ(solver::testing::with_all_lists(state).load, (std::vector<int>{-1, -1}));
 }
 
 TEST(ParticleTable, places_are_what_a_kernel_moves_of_a_position) {
