@@ -79,7 +79,8 @@ talus::On device_called(const std::string& word) {
   if (word == "auto") return talus::On::automatic;
   if (word == "cpu") return talus::On::cpu;
   if (word == "gpu") return talus::On::gpu;
-  throw py::value_error("on = \"" + word + "\": it must be \"auto\", \"cpu\" or \"gpu\"");
+  if (word == "gpus") return talus::On::gpus;
+  throw py::value_error("on = \"" + word + "\": it must be \"auto\", \"cpu\", \"gpu\" or \"gpus\"");
 }
 
 // ---- views ----------------------------------------------------------------------------------------------------------

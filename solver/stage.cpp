@@ -52,14 +52,15 @@ struct SolveFlags {
 
 On device_called(const std::string& word) {
   if (word == "cpu") return On::cpu;
+  if (word == "gpus") return On::gpus;
   return word == "gpu" ? On::gpu : On::automatic;
 }
 
 /// The flags of talus-solve, each setting its member of `given`.
 std::vector<Flag> flags_into(const std::shared_ptr<SolveFlags>& given) {
   return {{.name = "--on",
-           .help = "Where to run; auto takes the GPU where there is one",
-           .choices = {"auto", "cpu", "gpu"},
+           .help = "Where to run; auto takes the GPU where there is one, gpus shares one run among all of this machine",
+           .choices = {"auto", "cpu", "gpu", "gpus"},
            .set = [given](const std::string& word) { given->on = device_called(word); }},
           {.name = "--restart",
            .help = "Go on from a checkpoint (default: checkpoint.h5 in the results)",

@@ -57,7 +57,7 @@ struct Words {
 Flag unheeded_on() {
   return {.name = "--on",
           .help = "This stage runs on the CPU whatever is asked",
-          .choices = {"auto", "cpu", "gpu"},
+          .choices = {"auto", "cpu", "gpu", "gpus"},
           .set = [](const std::string&) {}};
 }
 

@@ -138,7 +138,8 @@ double free_memory(const GpuDevice& device) {
   std::uint64_t reserved = 0, used = 0;
   check_cuda(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrReservedMemCurrent, &reserved), "memory pool");
   check_cuda(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &used), "memory pool");
-  return static_cast<double>(free) + static_cast<double>(reserved - used);
+  const Peers* const peers = device.state().peers.get();  // large buffers are shared by all
+  return (static_cast<double>(free) + static_cast<double>(reserved - used)) * (peers ? peers->count() : 1);
 }
 
 double copy_bandwidth(const GpuDevice& device) { return measure_copy(device); }

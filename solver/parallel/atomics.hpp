@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Atomic updates of one memory location from many threads, on either device.
+// Atomic updates of one memory location from many threads, on either device. On GPUs they are those of the system: a
+// kernel may run on several at a time, and on one they take as long as its own.
 #pragma once
 
 #include <atomic>
@@ -18,7 +19,7 @@ TALUS_HD void atomic_max_positive(std::uint32_t* bits, float value) {
 #if defined(__CUDA_ARCH__)
   const unsigned together = __activemask(), most = __reduce_max_sync(together, __float_as_uint(value));
   const bool speaks = static_cast<int>(threadIdx.x % 32) == __ffs(static_cast<int>(together)) - 1;
-  if (speaks && most > *bits) atomicMax(bits, most);  // the read spares nearly all atomics
+  if (speaks && most > *bits) atomicMax_system(bits, most);  // the read spares nearly all atomics
 #else
   std::uint32_t mine;
   std::memcpy(&mine, &value, sizeof mine);
@@ -43,7 +44,7 @@ TALUS_HD float positive_from_bits(std::uint32_t bits) {
 /// This function lowers *target to `value` where that is less.
 TALUS_HD void atomic_min(int* target, int value) {
 #if defined(__CUDA_ARCH__)
-  if (value < *target) atomicMin(target, value);
+  if (value < *target) atomicMin_system(target, value);
 #else
   std::atomic_ref<int> a(*target);
   int seen = a.load(std::memory_order_relaxed);
@@ -55,7 +56,7 @@ TALUS_HD void atomic_min(int* target, int value) {
 /// This function raises *target to `value` where that is more.
 TALUS_HD void atomic_max(int* target, int value) {
 #if defined(__CUDA_ARCH__)
-  if (value > *target) atomicMax(target, value);
+  if (value > *target) atomicMax_system(target, value);
 #else
   std::atomic_ref<int> a(*target);
   int seen = a.load(std::memory_order_relaxed);
@@ -70,9 +71,9 @@ TALUS_HD void atomic_add(double* target, double value) {
   const unsigned together = __activemask();
   if (together == 0xffffffffu) {
     for (unsigned apart = 16; apart > 0; apart /= 2) value += __shfl_down_sync(together, value, apart);
-    if (threadIdx.x % 32 == 0) atomicAdd(target, value);
+    if (threadIdx.x % 32 == 0) atomicAdd_system(target, value);
   } else {
-    atomicAdd(target, value);
+    atomicAdd_system(target, value);
   }
 #else
   std::atomic_ref<double> a(*target);
@@ -83,7 +84,7 @@ TALUS_HD void atomic_add(double* target, double value) {
 /// This function adds 1 to *target.
 TALUS_HD void atomic_increment(int* target) {
 #if defined(__CUDA_ARCH__)
-  atomicAdd(target, 1);
+  atomicAdd_system(target, 1);
 #else
   std::atomic_ref<int>(*target).fetch_add(1, std::memory_order_relaxed);
 #endif
@@ -92,7 +93,7 @@ TALUS_HD void atomic_increment(int* target) {
 /// This function adds to a whole number from many threads.
 TALUS_HD void add_to_bin(unsigned long long* target, unsigned long long value) {
 #if defined(__CUDA_ARCH__)
-  atomicAdd(target, value);
+  atomicAdd_system(target, value);
 #else
   std::atomic_ref<unsigned long long>(*target).fetch_add(value, std::memory_order_relaxed);
 #endif
@@ -101,7 +102,7 @@ TALUS_HD void add_to_bin(unsigned long long* target, unsigned long long value) {
 /// This function stores `value` where `expected` is found, and nowhere else.
 TALUS_HD void replace_if(int* target, int expected, int value) {
 #if defined(__CUDA_ARCH__)
-  atomicCAS(target, expected, value);
+  atomicCAS_system(target, expected, value);
 #else
   std::atomic_ref<int>(*target).compare_exchange_strong(expected, value, std::memory_order_relaxed);
 #endif
@@ -110,7 +111,7 @@ TALUS_HD void replace_if(int* target, int expected, int value) {
 /// This function stores a flag that several threads may set to the same meaning.
 TALUS_HD void raise_flag(int* flag, int value) {
 #if defined(__CUDA_ARCH__)
-  atomicExch(flag, value);
+  atomicExch_system(flag, value);
 #else
   std::atomic_ref<int>(*flag).store(value, std::memory_order_relaxed);
 #endif
@@ -121,7 +122,7 @@ TALUS_HD void raise_flag(int* flag, int value) {
 template <class Real>
 TALUS_HD void scatter_add(Real* target, Real value) {
 #if defined(__CUDA_ARCH__)
-  atomicAdd(target, value);
+  atomicAdd_system(target, value);
 #else
   *target += value;
 #endif
@@ -142,7 +143,9 @@ TALUS_HD void scatter_add(Vec4<Real>* target, const Four<Real>& v) {
   const Vec3<Real> xyz = v.xyz();
 #if __CUDA_ARCH__ >= 900
   if constexpr (sizeof(Real) == 4) {  // one 16-byte atomic instead of four
-    atomicAdd(reinterpret_cast<float4*>(target), make_float4(v.w(), xyz.x, xyz.y, xyz.z));
+    asm volatile("red.relaxed.sys.global.add.v4.f32 [%0], {%1, %2, %3, %4};" ::"l"(target), "f"(v.w()), "f"(xyz.x),
+                 "f"(xyz.y), "f"(xyz.z)
+                 : "memory");
     return;
   }
 #endif

@@ -5,10 +5,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "solver/parallel/profile.hpp"
 
@@ -47,9 +49,12 @@ class GpuDevice {
   /// A new stream on the GPU of that index, 0 <= index < count(). Throws std::runtime_error where CUDA has none, and
   /// std::logic_error in a binary without CUDA.
   static GpuDevice make(int index = 0);
+  /// Several GPUs of this host as one device: large kernels and buffers are shared among them, the rest is the first
+  /// one's. Throws RecipeError where they cannot read one another's memory.
+  static GpuDevice make(const std::vector<int>& indices);
   static int count();  ///< number of GPUs that CUDA sees; 0 in a binary without CUDA
 
-  int index() const;            ///< number of the GPU, 0 <= index() < count()
+  int index() const;            ///< number of the GPU, or the first, 0 <= index() < count()
   CUstream_st* stream() const;  ///< stream of the device
   Profile& profile() const;     ///< times of the kernels that were started on this device
   /// The resources of the device, for the functions of solver/parallel.
@@ -100,6 +105,13 @@ void gpu_select(const GpuDevice& device);
 void gpu_check_launch(const char* where);
 /// True where a kernel may come onto the device before the one before it has ended.
 bool gpu_starts_early(const GpuDevice& device);
+/// The number of GPUs that share a kernel of so many threads, the first one selected: 1 where it has few for each. With
+/// more, all of them wait for what was started before, until gpu_end_shares().
+int gpu_begin_shares(const GpuDevice& device, std::int64_t threads);
+/// Makes the GPU of share n the one that this thread's CUDA calls mean, and returns its stream.
+CUstream_st* gpu_share(const GpuDevice& device, int n);
+/// What is started on the device from here on waits for all shares.
+void gpu_end_shares(const GpuDevice& device);
 
 /// What is started on the device from here on is recorded, and not done.
 void gpu_begin_recording(const GpuDevice& device);

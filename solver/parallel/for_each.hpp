@@ -20,7 +20,7 @@ namespace talus {
 
 #if defined(__CUDACC__)
 
-/// The block of threads that a kernel's code runs in, and the number of blocks of its run.
+/// The block of threads that a kernel's code runs in, and the number of blocks of its run, on all GPUs together.
 struct LaunchBlock {
   int index, count;
 };
@@ -35,19 +35,27 @@ __device__ inline void begin_kernel() {
 #endif
 }
 
+/// `first`: the first block of this launch, which is the run's unless several GPUs share it.
 template <class Kernel>
-__device__ __forceinline__ void run_one(const Kernel& kernel) {
+__device__ __forceinline__ void run_one(const Kernel& kernel, LaunchBlock first) {
   begin_kernel();
-  kernel.run({static_cast<int>(blockIdx.x), static_cast<int>(gridDim.x)});
+  kernel.run({first.index + static_cast<int>(blockIdx.x), first.count});
 }
 
 template <class Kernel>
-__global__ void run_kernel(Kernel kernel) {
-  run_one(kernel);
+__global__ void run_kernel(Kernel kernel, LaunchBlock first) {
+  run_one(kernel, first);
+}
+/// A GPU's share of a kernel that is short of registers, and the whole of it: where the first block is known, G2P in
+/// single precision spills less and takes 4 to 15 % less time.
+template <class Kernel>
+__global__ __launch_bounds__(Kernel::most_threads, Kernel::least_blocks) void run_dense_share(Kernel kernel,
+                                                                                              LaunchBlock first) {
+  run_one(kernel, first);
 }
 template <class Kernel>
 __global__ __launch_bounds__(Kernel::most_threads, Kernel::least_blocks) void run_dense_kernel(Kernel kernel) {
-  run_one(kernel);
+  run_one(kernel, {0, static_cast<int>(gridDim.x)});
 }
 
 /// How a kernel is laid out on a GPU.
@@ -74,15 +82,28 @@ void launch(const LaunchShape& shape, void (*kernel)(Parameters...),
   static_cast<void>(cudaLaunchKernelEx(&config, kernel, arguments...));
 }
 
-/// Starts a kernel on the device.
+/// Starts a kernel on the device, whose GPUs take as many of its blocks each.
 template <class Kernel>
 void gpu_launch(const GpuDevice& device, const char* where, int blocks, int threads, const Kernel& kernel) {
-  gpu_select(device);
-  const LaunchShape shape{device.stream(), blocks, threads, gpu_starts_early(device)};
-  if constexpr (requires { Kernel::least_blocks; }) {
-    launch(shape, run_dense_kernel<Kernel>, kernel);
+  const auto start = [&](CUstream_st* stream, int first, int last, bool early) {
+    if (first == last) return;  // fewer blocks than GPUs
+    const LaunchShape shape{stream, last - first, threads, early};
+    const LaunchBlock from{first, blocks};
+    if constexpr (!requires { Kernel::least_blocks; }) {
+      launch(shape, run_kernel<Kernel>, kernel, from);
+    } else if (last - first < blocks) {
+      launch(shape, run_dense_share<Kernel>, kernel, from);
+    } else {
+      launch(shape, run_dense_kernel<Kernel>, kernel);
+    }
+  };
+  const int shares = gpu_begin_shares(device, static_cast<std::int64_t>(blocks) * threads);
+  if (shares == 1) {
+    start(device.stream(), 0, blocks, gpu_starts_early(device));
   } else {
-    launch(shape, run_kernel<Kernel>, kernel);
+    const auto first_of = [&](int n) { return static_cast<int>(static_cast<std::int64_t>(blocks) * n / shares); };
+    for (int n = 0; n < shares; ++n) start(gpu_share(device, n), first_of(n), first_of(n + 1), false);
+    gpu_end_shares(device);
   }
   gpu_check_launch(where);
 }
@@ -180,18 +201,22 @@ namespace detail {
 /// Threads of a block: few where there is little to do, so that every multiprocessor gets some of it.
 inline int threads_for(bool busy) { return busy ? 128 : 32; }
 
+/// Orders what this thread writes before and after; with several GPUs, for all of them.
+__device__ inline void fence(bool one_gpu) { one_gpu ? __threadfence() : __threadfence_system(); }
+
 /// Whether this block of a launch is the last one that comes here: then what the others wrote before is there to be
 /// read. `ticket` is zero before a launch, and again behind it. All threads of the block have to call.
 __device__ inline bool comes_last(unsigned* ticket, int blocks) {
   __shared__ bool last;
+  const bool one_gpu = blocks == static_cast<int>(gridDim.x);
   __syncthreads();
   if (threadIdx.x == 0) {
-    __threadfence();
+    fence(one_gpu);
     const auto final = static_cast<unsigned>(blocks - 1);
-    last = atomicInc(ticket, final) == final;
+    last = atomicInc_system(ticket, final) == final;
   }
   __syncthreads();
-  if (last) __threadfence();
+  if (last) fence(one_gpu);
   return last;
 }
 

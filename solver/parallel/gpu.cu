@@ -58,19 +58,31 @@ char* StreamMemory::allocate(std::ptrdiff_t bytes) {
     kept_.erase(found);
     return memory;
   }
-  void* memory = nullptr;
-  if (cudaMallocAsync(&memory, size, stream_) != cudaSuccess) {
-    (void)cudaGetLastError();
+  char* memory = take(size, keeps);
+  if (memory == nullptr) {
     drop_kept();
-    check_cuda(cudaMallocAsync(&memory, size, stream_), "cudaMallocAsync");
+    memory = take(size, keeps);
   }
-  return static_cast<char*>(memory);
+  if (memory == nullptr) check_cuda(cudaErrorMemoryAllocation, "an allocation");
+  return memory;
+}
+
+char* StreamMemory::take(std::size_t bytes, bool keeps) {
+  if (peers_ != nullptr && !keeps) return peers_->allocate(bytes);
+  void* memory = nullptr;
+  const cudaError_t code = cudaMallocAsync(&memory, bytes, stream_);
+  if (code == cudaSuccess) return static_cast<char*>(memory);
+  (void)cudaGetLastError();
+  if (code != cudaErrorMemoryAllocation) check_cuda(code, "cudaMallocAsync");
+  return nullptr;
 }
 
 void StreamMemory::deallocate(char* memory, std::ptrdiff_t bytes) {
   const std::lock_guard<std::mutex> one(mutex_);
   if (bytes <= most_kept) {
     kept_.emplace(rounded_up(bytes), memory);
+  } else if (peers_ != nullptr) {
+    peers_->free(memory);
   } else {
     (void)cudaFreeAsync(memory, stream_);
   }
@@ -81,7 +93,7 @@ void StreamMemory::drop_kept() {
   kept_.clear();
 }
 
-GpuState::GpuState(int gpu) : index(gpu) {
+GpuState::GpuState(const std::vector<int>& gpus) : index(gpus.front()) {
   gpu_used = true;
   check_cuda(cudaSetDevice(index), "cudaSetDevice");
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "stream");
@@ -92,7 +104,8 @@ GpuState::GpuState(int gpu) : index(gpu) {
   void* host = nullptr;
   if (cudaMallocHost(&host, LockedMemory::size) == cudaSuccess) locked.memory = static_cast<char*>(host);
   (void)cudaGetLastError();
-  memory = std::make_unique<StreamMemory>(stream);
+  if (gpus.size() > 1) peers = std::make_unique<Peers>(gpus, stream);
+  memory = std::make_unique<StreamMemory>(stream, peers.get());
   // The scratch buffers are part of this state: their handle must not keep it alive.
   const GpuDevice self(std::shared_ptr<GpuState>(std::shared_ptr<void>(), this));
   scratch = std::make_unique<GpuScratch>(self);
@@ -103,6 +116,7 @@ GpuState::~GpuState() {
   (void)cudaStreamSynchronize(stream);
   scratch.reset();
   memory.reset();
+  peers.reset();
   for (cudaEvent_t event : free_marks) (void)cudaEventDestroy(event);
   if (locked.memory) (void)cudaFreeHost(locked.memory);
   for (const auto& [bytes, room] : host_rooms) (void)cudaFreeHost(room);
@@ -123,7 +137,8 @@ void GpuState::wait(const char* what) {
   locked.used = LockedMemory::few;
 }
 
-GpuDevice GpuDevice::make(int index) { return GpuDevice(std::make_shared<GpuState>(index)); }
+GpuDevice GpuDevice::make(int index) { return make(std::vector{index}); }
+GpuDevice GpuDevice::make(const std::vector<int>& indices) { return GpuDevice(std::make_shared<GpuState>(indices)); }
 
 int GpuDevice::count() {
   int count = 0;
@@ -225,6 +240,17 @@ void gpu_select(const GpuDevice& device) { device.state().select(); }
 void gpu_check_launch(const char* where) { check_cuda(cudaGetLastError(), where); }
 bool gpu_starts_early(const GpuDevice& device) { return device.state().starts_early; }
 
+int gpu_begin_shares(const GpuDevice& device, std::int64_t threads) {
+  GpuState& state = device.state();
+  state.select();
+  Peers* const peers = state.peers.get();
+  if (peers == nullptr || threads < peers->share_from) return 1;
+  peers->fork();
+  return peers->count();
+}
+CUstream_st* gpu_share(const GpuDevice& device, int n) { return device.state().peers->select(n); }
+void gpu_end_shares(const GpuDevice& device) { device.state().peers->join(); }
+
 void gpu_begin_recording(const GpuDevice& device) {
   GpuState& state = device.state();
   state.select();
@@ -294,6 +320,7 @@ namespace {
 }  // namespace
 
 GpuDevice GpuDevice::make(int) { absent(); }
+GpuDevice GpuDevice::make(const std::vector<int>&) { absent(); }
 int GpuDevice::count() { return 0; }
 int GpuDevice::index() const { absent(); }
 CUstream_st* GpuDevice::stream() const { absent(); }

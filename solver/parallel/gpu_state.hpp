@@ -12,6 +12,7 @@
 #include <mutex>
 #include <vector>
 
+#include "solver/parallel/peers.hpp"
 #include "solver/parallel/sums.hpp"
 
 namespace talus {
@@ -26,7 +27,8 @@ class StreamMemory {
   using value_type = char;
   static constexpr std::ptrdiff_t most_kept = 16 << 20;  ///< larger memory goes back to CUDA's own pool [bytes]
 
-  explicit StreamMemory(cudaStream_t stream) : stream_(stream) {}
+  /// `peers`, or null: the GPUs that hold a piece each of what is larger than most_kept.
+  StreamMemory(cudaStream_t stream, Peers* peers) : stream_(stream), peers_(peers) {}
   StreamMemory(const StreamMemory&) = delete;
   StreamMemory& operator=(const StreamMemory&) = delete;
   ~StreamMemory() { drop_kept(); }
@@ -36,8 +38,11 @@ class StreamMemory {
   void deallocate(char* memory, std::ptrdiff_t bytes);  ///< keeps memory from allocate(bytes) for the next call
 
  private:
+  /// Null where there is not enough.
+  char* take(std::size_t bytes, bool keeps);
   void drop_kept();
   cudaStream_t stream_;
+  Peers* peers_;
   std::mutex mutex_;
   std::multimap<std::size_t, char*> kept_;  ///< by the size that it was rounded up to [bytes]
 };
@@ -68,7 +73,7 @@ struct LockedMemory {
 
 /// The stream, scratch memory, events and profile of one GpuDevice.
 struct GpuState {
-  explicit GpuState(int gpu);
+  explicit GpuState(const std::vector<int>& gpus);
   GpuState(const GpuState&) = delete;
   GpuState& operator=(const GpuState&) = delete;
   ~GpuState();
@@ -78,6 +83,7 @@ struct GpuState {
 
   int index;
   cudaStream_t stream = nullptr;
+  std::unique_ptr<Peers> peers;  ///< null for a device of one GPU
   bool starts_early = false, recording = false;
   bool is_idle = true;  ///< nothing was started on the stream since the host waited for it
   LockedMemory locked;

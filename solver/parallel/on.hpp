@@ -5,7 +5,7 @@
 
 namespace talus {
 
-/// The device that the command line asks for; `automatic` takes the GPU where there is one.
-enum class On { automatic, cpu, gpu };
+/// The device that the command line asks for; `automatic` takes the GPU where there is one, `gpus` all as one device.
+enum class On { automatic, cpu, gpu, gpus };
 
 }  // namespace talus

@@ -256,7 +256,7 @@ __device__ __forceinline__ void add_together(const Kernel& kernel, const TileLan
       const int number = (whole >> (g * Sizes::columns) & 1u) != 0 ? Sizes::nodes_at_once : Sizes::columns;
       if (!adds_part) continue;
       for (int n = at.lane() / lanes; n < number; n += warp_size / lanes)
-        atomicAdd(kernel.part(nodes[n], part), values[n * parts + part]);
+        scatter_add(kernel.part(nodes[n], part), values[n * parts + part]);
     }
     __syncwarp();
   }
@@ -327,7 +327,7 @@ __device__ void reduce_tile(int count, int block, const Kernel& kernel, SharedTi
   __syncwarp();
   const int counting = __popc(order.counting), first = team * part;
   const int last = team >= teams ? 0 : first + part < counting ? first + part : counting;
-  const auto add_to = [](auto* number, auto value) { atomicAdd(number, value); };
+  const auto add_to = [](auto* number, auto value) { scatter_add(number, value); };
   typename Kernel::Share share;
   for (int n = first; n < last; ++n) {
     const int at = places[n];

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/scene/make_solver.hpp"
 
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "solver/integrator/make_solvers.hpp"
 #include "solver/parallel/atomics.hpp"
@@ -65,12 +67,17 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& op
 
 AnyDevice make_device(On on, int index) {
   if (on == On::gpu) return GpuDevice::make(index);
+  if (on == On::gpus) {
+    std::vector<int> all(static_cast<std::size_t>(GpuDevice::count()));
+    std::iota(all.begin(), all.end(), 0);
+    return GpuDevice::make(all);
+  }
   return CpuDevice::make();
 }
 
 On choose_device(On on) {
-  if (on == On::gpu && !gpu_available())
-    throw RecipeError({"--on gpu", "this machine has no GPU that the program can use", "Use --on cpu or --on auto"});
+  if ((on == On::gpu || on == On::gpus) && !gpu_available())
+    throw RecipeError({on == On::gpu ? "--on gpu" : "--on gpus", "this machine has no GPU that the program can use", "Use --on cpu or --on auto"});
   if (on == On::automatic) return gpu_available() ? On::gpu : On::cpu;
   return on;
 }

@@ -31,7 +31,7 @@ std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolverSettings& 
 std::unique_ptr<Solver> resume_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device,
                                       const SolverState& state);
 
-/// A new device: the CPU's, or a stream on the GPU of that index. `on` must be cpu or gpu.
+/// A new device: the CPU's, a stream on the GPU of that index, or all GPUs as one. `on` must not be automatic.
 AnyDevice make_device(On on, int index = 0);
 
 /// The choice of cpu or gpu where `on` is automatic. Throws RecipeError: a GPU is asked for and there is none.

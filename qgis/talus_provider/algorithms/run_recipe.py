@@ -19,7 +19,7 @@ from ..layers import load_results
 from ..results import Results
 from .base import TalusAlgorithm, folder_of_results
 
-PLACES = ["auto", "cpu", "gpu"]
+PLACES = ["auto", "cpu", "gpu", "gpus"]
 
 
 class RunRecipe(TalusAlgorithm):
