@@ -155,9 +155,8 @@ struct MarkLong {
     const int j = points.cell[1][p] + static_cast<int>(floor(points.offset[1][p] + Real(0.5) * y + Real(0.5)));
     if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows) return false;
     const int k = points.cell[2][p];
-    return before(home_key(grid.block_columns_x, i, j, k + 2)) -
-               before(home_key(grid.block_columns_x, i, j, k > 0 ? k - 1 : 0)) <
-           enough;
+    const int last = before(home_key(grid.block_columns_x, i, j, k > 0 ? k - 1 : 0)) + enough - 1;
+    return last >= points.count || keys[last] >= home_key(grid.block_columns_x, i, j, k + 2);
   }
   /// The points that come before a key.
   TALUS_HD int before(std::uint64_t key) const {
