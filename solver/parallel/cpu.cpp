@@ -12,6 +12,7 @@
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
+#include "common/large_memory.hpp"
 #include "common/stage/machine.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/host_room.hpp"
@@ -24,8 +25,7 @@ CpuDevice CpuDevice::make() { return CpuDevice(std::make_shared<Profile>()); }
 namespace detail {
 
 void* allocate(const CpuDevice&, std::size_t bytes) {
-  constexpr std::size_t line = 64;
-  void* memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);
+  void* memory = memory_in_large_pages(bytes);
   if (!memory) throw std::bad_alloc();
   return memory;
 }
