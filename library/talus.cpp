@@ -193,7 +193,7 @@ std::int64_t Moment::steps() const { return loop_.stepper().solver().clock().ste
 const RunHistory& Moment::history() const { return loop_.history().rows(); }
 std::vector<double> Moment::thickness() const { return loop_.stepper().solver().thickness(); }
 RunMaps Moment::maps() const {
-  const solver::SolverState state = loop_.stepper().solver().state();
+  const solver::SolverState state = loop_.stepper().solver().end_state();
   return solver::final_maps(loop_.end(state), thickness());
 }
 PointFrame Moment::points() const { return points_of(loop_); }
@@ -218,7 +218,7 @@ Result run(const Plan& plan, On on, Keeper& keeper) {
   result.summary.provenance.emplace_back(recipe_of_run, plan.mark_);
   result.summary.provenance.emplace_back(run_id, new_run_id());
   loop.memory().wall_time = timer.seconds();
-  const solver::SolverState state = loop.stepper().solver().state();
+  const solver::SolverState state = loop.stepper().solver().end_state();
   const solver::RunEnd end = loop.end(state);
   loop.measure(end, result.summary);
   loop.history().conclude();

@@ -197,7 +197,7 @@ std::optional<MemberRun> run_member(const std::shared_ptr<const Plan>& plan, con
   } catch (const GivenUp&) {
     return std::nullopt;
   }
-  const SolverState state = loop.stepper().solver().state();
+  const SolverState state = loop.stepper().solver().end_state();
   const RunEnd end = loop.end(state);
   const double outflow = loop.memory().outflow_volume;
   loop.history().conclude();

@@ -38,7 +38,7 @@ class PointSolver : public Solver {
         measures_(device, scene.grid),
         measuring_(device),
         motion_(device) {
-    points_.upload(state.points);
+    points_.upload(state.all_points());
   }
 
   ~PointSolver() override { drop_sort_space(device_); }
@@ -59,6 +59,13 @@ class PointSolver : public Solver {
             .clock = clock_.read(),
             .maps = maps_.download(),
             .contacts = surroundings_.contact().state()};
+  }
+
+  SolverState end_state() const override {
+    return {.points = points_.download(points_.needs().boxes ? Kept::in_checkpoint : Kept::to_the_end),
+            .clock = clock_.read(),
+            .maps = maps_.download(),
+            .contacts = {}};
   }
 
   void show(ParticleState& to) const override { points_.download(Kept::in_frames, to); }

@@ -34,10 +34,13 @@ struct Packing {
 /// The state that a checkpoint keeps.
 struct SolverState {
   ParticleState points;
+  const ParticleState* seeds = nullptr;  ///< of a scene that outlives this, in place of `points`; null otherwise
   std::vector<std::int64_t> homes = {};  ///< of points that have gone on since they were sorted: home_key(), or empty
   Clock clock;
   RunningMaps<std::vector<double>> maps;
   ContactState contacts;
+  /// The points, whoever holds them.
+  const ParticleState& all_points() const { return seeds != nullptr ? *seeds : points; }
 };
 
 /// The points of a state that has homes, each in its home cell and the octant of it that its key names: a sort leaves
@@ -76,6 +79,8 @@ class Solver {
   virtual Clock clock() const = 0;  ///< clock of the end of the last step
   /// All that a checkpoint keeps; what a run may go on from where BatchReport::can_be_saved.
   virtual SolverState state() const = 0;
+  /// The same with what results are made of: places, boxes, volumes, ids and releases of the points, clock and maps.
+  virtual SolverState end_state() const = 0;
   /// The points as frames show them: without affine velocity, acceleration, boxes and loads, whose lists are empty.
   ParticleState shown() const {
     ParticleState points;

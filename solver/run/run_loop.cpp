@@ -84,8 +84,8 @@ RunLoop::RunLoop(std::shared_ptr<const Plan> plan, const AnyDevice& device, Hist
 
 void RunLoop::start() {
   const bool loads = options().gravity_loading_steps > 0 && scene().points.size() > 0;
-  stepper_.begin(first_state(scene(), make_settings(options(), scene().grid).common,
-                             loads ? loaded_by_gravity(scene(), options(), stepper_.device()) : scene().points));
+  const ParticleState loaded = loads ? loaded_by_gravity(scene(), options(), stepper_.device()) : ParticleState{};
+  stepper_.begin(first_state(scene(), make_settings(options(), scene().grid).common, loads ? loaded : scene().points));
   for (const std::string& note : scene().contacts.notes) log_info(note);
   memory_.initial_thickness = stepper_.solver().thickness();
 }

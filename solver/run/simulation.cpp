@@ -155,7 +155,7 @@ void Simulation::save_checkpoint() {
 }
 
 RunSummary Simulation::finish(RunSummary summary, const Findings& found) {
-  const SolverState state = loop_.stepper().solver().state();
+  const SolverState state = loop_.stepper().solver().end_state();
   loop_.memory().wall_time = timer_.seconds();
   const RunEnd end = loop_.end(state);
   loop_.measure(end, summary);

@@ -12,13 +12,9 @@
 
 namespace talus::solver {
 
-SolverState first_state(const Scene& scene, const IntegratorSettings& settings) {
-  return first_state(scene, settings, scene.points);
-}
-
-SolverState first_state(const Scene& scene, const IntegratorSettings& settings, ParticleState points) {
+SolverState first_state(const Scene& scene, const IntegratorSettings& settings, const ParticleState& points) {
   SolverState state;
-  state.points = std::move(points);
+  state.seeds = &points;
   const auto cells = scene.map.count();
   for_each_running_map(
       [&](const RunningMap& map, auto& values) {
@@ -32,15 +28,14 @@ SolverState first_state(const Scene& scene, const IntegratorSettings& settings, 
   state.clock.motion_maps.column_spacing = scene.grid.spacing;
   if (settings.water) state.clock.water.steps_between = steps_between_flows;
   state.clock.budget.is_kept = settings.energy_budget ? 1 : 0;
-  const auto rate =
-      static_cast<float>(first_rate(scene.grid, scene.terrain, state.points,
-                                    {settings.fastest_wave, !(settings.kappa > 0)}, settings.initial_speed()));
+  const auto rate = static_cast<float>(first_rate(
+      scene.grid, scene.terrain, points, {settings.fastest_wave, !(settings.kappa > 0)}, settings.initial_speed()));
   atomic_max_positive(&state.clock.control.rate_bits, rate);
   return state;
 }
 
 std::unique_ptr<Solver> make_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device) {
-  return resume_solver(scene, settings, device, first_state(scene, settings.common));
+  return resume_solver(scene, settings, device, first_state(scene, settings.common, scene.points));
 }
 
 std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, const AnyDevice& device) {
@@ -77,7 +72,8 @@ AnyDevice make_device(On on, int index) {
 
 On choose_device(On on) {
   if ((on == On::gpu || on == On::gpus) && !gpu_available())
-    throw RecipeError({on == On::gpu ? "--on gpu" : "--on gpus", "this machine has no GPU that the program can use", "Use --on cpu or --on auto"});
+    throw RecipeError({on == On::gpu ? "--on gpu" : "--on gpus", "this machine has no GPU that the program can use",
+                       "Use --on cpu or --on auto"});
   if (on == On::automatic) return gpu_available() ? On::gpu : On::cpu;
   return on;
 }

@@ -14,10 +14,9 @@
 
 namespace talus::solver {
 
-/// The state of a scene at the start.
-SolverState first_state(const Scene& scene, const IntegratorSettings& settings);
-/// The same with other points, such as those of a mass that gravity has loaded.
-SolverState first_state(const Scene& scene, const IntegratorSettings& settings, ParticleState points);
+/// The state of a scene at the start, with the scene's points or others, such as those of a mass that gravity has
+/// loaded; they must outlive it.
+SolverState first_state(const Scene& scene, const IntegratorSettings& settings, const ParticleState& points);
 
 /// A solver of a scene at its start; it keeps a handle to the device, which other solvers may share.
 std::unique_ptr<Solver> make_solver(const Scene& scene, const SolverSettings& settings, const AnyDevice& device);

@@ -33,7 +33,8 @@ struct ParticleNeeds {
 enum class Kept {
   within_step,    ///< means nothing between steps: neither sorted nor written
   in_checkpoint,  ///< kept across steps, sorted with the points, and written to checkpoints
-  in_frames       ///< copied to the host for frames too
+  in_frames,      ///< copied to the host for frames too
+  to_the_end      ///< and for what is made of a run's last state
 };
 
 // A line: name, numbers (Ints or Reals), components, unit, what needs it (a member of ParticleNeeds), how long it is
@@ -42,9 +43,9 @@ enum class Kept {
 // clang-format off
 #define TALUS_PARTICLE_FIELDS(FIELD)                                                               \
   /* nearest node: column, row, layer */                                                           \
-  FIELD(cell,               Ints,  3, "1",     always,            in_frames,     0)                \
+  FIELD(cell,               Ints,  3, "1",     always,            to_the_end,    0)                \
   /* from the nearest node, along x, y, zeta, in [-0.5, 0.5) */                                    \
-  FIELD(offset,             Reals, 3, "cells", always,            in_frames,     0)                \
+  FIELD(offset,             Reals, 3, "cells", always,            to_the_end,    0)                \
   FIELD(velocity,           Reals, 3, "m/s",   always,            in_frames,     0)                \
   /* velocity change per cell, columns x, y, zeta */                                               \
   FIELD(affine,             Reals, 9, "m/s",   affine_transfer,   in_checkpoint, 0)                \
@@ -55,7 +56,7 @@ enum class Kept {
   /* the part of log_volume that is plastic dilation */                                            \
   FIELD(plastic_log_volume, Reals, 1, "1",     plastic_volume,    in_frames,     0)                \
   /* initial volume; mass is volume times the density of the scene */                              \
-  FIELD(volume,             Reals, 1, "m3",    always,            in_frames,     0)                \
+  FIELD(volume,             Reals, 1, "m3",    always,            to_the_end,    0)                \
   /* sides of the box that a point stands for, along x, y, zeta */                                 \
   FIELD(extent,             Reals, 3, "cells", boxes,             in_checkpoint, 0)                \
   /* two sides of what a point stands for, along the ground at first: x, y, z of each */           \
@@ -66,9 +67,9 @@ enum class Kept {
   FIELD(move,               Reals, 3, "cells", remapped_velocity, within_step,   0)                \
   FIELD(acceleration,       Reals, 3, "m/s2",  accelerations,     in_checkpoint, 0)                \
   /* order of seeding */                                                                           \
-  FIELD(id,                 Ints,  1, "1",     always,            in_frames,     0)                \
+  FIELD(id,                 Ints,  1, "1",     always,            to_the_end,    0)                \
   /* which release a point belongs to */                                                           \
-  FIELD(release,            Ints,  1, "1",     always,            in_frames,     0)                \
+  FIELD(release,            Ints,  1, "1",     always,            to_the_end,    0)                \
   /* which load pulls at a point, -1: none */                                                      \
   FIELD(load,               Ints,  1, "1",     loads,             in_checkpoint, -1)               \
   /* which material a point is of */                                                               \
@@ -308,6 +309,7 @@ class Particles {
   void download(Kept least, ParticleState& to) const;
   ParticleView<Real> view();            ///< points as kernels see them, until the next upload() or reorder()
   int count() const { return count_; }  ///< number of points
+  const ParticleNeeds& needs() const { return needs_; }  ///< what the run needs of its points
   std::size_t bytes() const;
   /// The initial volumes of the points [m3], on the device.
   const Buffer<Real, Device>& volume() const { return arrays_.volume; }

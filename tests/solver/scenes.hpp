@@ -192,6 +192,14 @@ inline std::string place_name(const ::testing::TestParamInfo<On>& info) {
 #define TALUS_IN_EACH_PLACE(suite) \
   INSTANTIATE_TEST_SUITE_P(places, suite, ::testing::Values(On::cpu, On::gpu), place_name)
 
+/// The state of a scene at the start, with points of its own.
+inline SolverState first_state(const Scene& scene, const IntegratorSettings& settings) {
+  SolverState state = solver::first_state(scene, settings, scene.points);
+  state.points = scene.points;
+  state.seeds = nullptr;
+  return state;
+}
+
 /// A solver on a new device.
 inline std::unique_ptr<Solver> make_solver(const Scene& scene, const SolveOptions& options, On on) {
   return solver::make_solver(scene, options, make_device(on));

@@ -84,7 +84,7 @@ Checkpoint sample() {
   c.stop_reason = "end of the simulated time";
   const SolveOptions options;
   const Scene scene = make_scene(three_points(), options);
-  c.state = first_state(scene, make_settings(options, scene.grid).common);
+  c.state = testing::first_state(scene, make_settings(options, scene.grid).common);
   c.state.maps.peak_speed[7] = std::numeric_limits<double>::denorm_min();
   c.state.contacts = {{1, 2, 3}, {-0.0, 5, 6}};
   FillItems fill;
@@ -294,7 +294,7 @@ TEST(Checkpoint, what_does_not_fit_the_scene_is_refused_before_a_kernel_sees_it)
   const Scene scene = make_scene(three_points(), options);
   const auto fault_with = [&](const auto& change) {
     Checkpoint c;
-    c.state = first_state(scene, make_settings(options, scene.grid).common);
+    c.state = testing::first_state(scene, make_settings(options, scene.grid).common);
     c.state.points = testing::with_all_lists(c.state.points);
     c.memory.initial_thickness.assign(scene.map.count(), 0.0);
     change(c);
