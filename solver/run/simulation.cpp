@@ -105,7 +105,11 @@ RunSummary Simulation::run(const std::string& scene, const std::string& title, c
   if (fresh) {
     marks_.id = new_run_id();
     frames_.belong_to(marks_.id);
+    Profile& profile = loop_.stepper().device().profile();
+    const bool measured = profile.on();
+    profile.turn_off();  // the wall time is that of the steps
     loop_.start();
+    if (measured) profile.turn_on();
   }
   const OwnEnd saving("the state is saved at the next step that allows it");
   timer_.start();
