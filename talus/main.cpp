@@ -65,7 +65,8 @@ void declare_scene(CLI::App& app, Asked& asked) {
   app.add_option("--set", asked.request.set, "A value that takes the place of the recipe's; may be given many times")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  app.add_option("--on", asked.request.on, "Where talus-solve runs; auto takes the GPU where there is one, gpus all of this machine")
+  app.add_option("--on", asked.request.on,
+                 "Where talus-solve runs; auto takes the GPU where there is one, gpus all of this machine")
       ->type_name("auto|cpu|gpu|gpus")
       ->check(CLI::IsMember({"auto", "cpu", "gpu", "gpus"}).description(""));
   app.add_option("--threads", asked.request.threads, "Threads to take at most")

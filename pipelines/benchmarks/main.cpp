@@ -40,7 +40,9 @@ Words parse(int argc, char** argv) {
   CLI::App app("Time steps and kernels on a block of sand, from 1e4 points on; check what is timed.", "talus-bench");
   Words w;
   app.add_option("set", w.set, "What to time")->required()->check(CLI::IsMember({"kernels"}));
-  app.add_option("--on", w.on, "Where")->type_name("auto|cpu|gpu")->check(CLI::IsMember({"auto", "cpu", "gpu"}));
+  app.add_option("--on", w.on, "Where")
+      ->type_name("auto|cpu|gpu|gpus")
+      ->check(CLI::IsMember({"auto", "cpu", "gpu", "gpus"}));
   app.add_option("--out", w.out, "Folder for CSV and pictures");
   app.add_option("--most", w.most, "Largest number of points (default: 1e4 on a CPU, 1e7 on a GPU)");
   app.add_option("--least", w.least, "Smallest number of points");
@@ -144,8 +146,8 @@ std::string line_of(const KernelRun& r) {
 }
 
 int kernels(const Words& words, On on) {
-  const double most = words.most > 0 ? words.most : on == On::gpu ? 1e7 : 1e4;
-  const double copy = on == On::gpu ? copy_bandwidth(GpuDevice::make()) : copy_bandwidth(CpuDevice::make());
+  const double most = words.most > 0 ? words.most : on == On::cpu ? 1e4 : 1e7;
+  const double copy = on == On::cpu ? copy_bandwidth(CpuDevice::make()) : copy_bandwidth(GpuDevice::make());
   std::vector<KernelRun> runs;
   bool pass = true;
   for (KernelSetting setting : settings_of(words.only))
@@ -178,9 +180,10 @@ int main(int argc, char** argv) {
   const Words words = parse(argc, argv);
   try {
     fs::create_directories(words.out);
-    return kernels(words, solver::choose_device(words.on == "cpu"   ? On::cpu
-                                                : words.on == "gpu" ? On::gpu
-                                                                    : On::automatic));
+    return kernels(words, solver::choose_device(words.on == "cpu"    ? On::cpu
+                                                : words.on == "gpu"  ? On::gpu
+                                                : words.on == "gpus" ? On::gpus
+                                                                     : On::automatic));
   } catch (const std::exception& error) {
     fmt::print(stderr, "talus-bench: {}\n", error.what());
     return 2;

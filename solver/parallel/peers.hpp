@@ -24,7 +24,7 @@ class Peers {
   Peers& operator=(const Peers&) = delete;
   ~Peers();
 
-  std::int64_t share_from;  ///< threads of a kernel that is shared, at least
+  std::int64_t share_from;                                       ///< threads of a kernel that is shared, at least
   int count() const { return static_cast<int>(parts_.size()); }  ///< number of GPUs
   /// Lets all streams wait for what was started on the first.
   void fork();

@@ -191,6 +191,8 @@ test_gpu_that_is_not_there_is_refused() {
   if command -v nvidia-smi >/dev/null && nvidia-smi -L >/dev/null 2>&1; then skip "this machine has a GPU"; fi
   expect_exit 2 "$bin/talus-solve" recipe.toml --out out --on gpu
   expect_error "talus-solve: --on gpu (this machine has no GPU that the program can use). Use --on cpu or --on auto"
+  expect_exit 2 "$bin/talus-solve" recipe.toml --out out --on gpus
+  expect_error "talus-solve: --on gpus (this machine has no GPU that the program can use). Use --on cpu or --on auto"
   expect_no_file out domain.vdb preprocess.used.toml survey
 }
 

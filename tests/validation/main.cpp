@@ -72,8 +72,8 @@ Words parse(int argc, char** argv) {
   app.add_option("case", w.names, "Cases to run (default: all)")->type_name("A1 B2 ...");
   app.add_flag("--long", w.complete, "With the runs that take minutes to hours");
   app.add_option("--on", w.on, "Where talus-solve runs")
-      ->type_name("auto|cpu|gpu")
-      ->check(CLI::IsMember({"auto", "cpu", "gpu"}));
+      ->type_name("auto|cpu|gpu|gpus")
+      ->check(CLI::IsMember({"auto", "cpu", "gpu", "gpus"}));
   app.add_option("--out", w.out,
                  "Folder for runs, pictures and table (default: validation beside the programs' folder)");
   app.add_option("--programs", w.programs, "Folder of the programs (default: that of this one)");

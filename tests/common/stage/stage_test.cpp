@@ -136,7 +136,7 @@ TEST_F(RunStage, a_stage_without_kernels_takes_on_and_passes_it_over) {
   stage.flags.clear();
   EXPECT_EQ(run({recipe(), "--on", "gpu"}), 0) << err;
   EXPECT_EQ(run({recipe(), "--on", "tpu"}), 2);
-  EXPECT_TRUE(holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu}"}));
+  EXPECT_TRUE(holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu,gpus}"}));
   EXPECT_EQ(run({recipe(), "--restart"}), 2);
   EXPECT_EQ(run({"--help"}), 0);
   EXPECT_TRUE(holds(out, {"This stage runs on the CPU whatever is asked"}));
@@ -180,13 +180,13 @@ TEST_F(RunStage, no_recipe_unknown_options_and_values_are_usage_errors) {
   EXPECT_EQ(run({}), 2);
   EXPECT_EQ(err,
             "talus-sample: no recipe was given. Usage: talus-sample recipe.toml [--out DIR] [--set KEY=VALUE] "
-            "[--check] [--template] [--threads N] [--on auto|cpu|gpu] [--restart [FILE]] [--profile] [--plan] [-v|-q] "
-            "(all of it: talus-sample --help)\n");
+            "[--check] [--template] [--threads N] [--on auto|cpu|gpu|gpus] [--restart [FILE]] [--profile] [--plan] "
+            "[-v|-q] (all of it: talus-sample --help)\n");
   EXPECT_EQ(out, "");
   EXPECT_EQ(run({recipe(), "--fast"}), 2);
   EXPECT_TRUE(holds(err, {"talus-sample: The following argument was not expected: --fast. Usage: "}));
   EXPECT_EQ(run({recipe(), "--on", "tpu"}), 2);
-  EXPECT_TRUE(holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu}"}));
+  EXPECT_TRUE(holds(err, {"talus-sample: --on: tpu not in {auto,cpu,gpu,gpus}"}));
   EXPECT_EQ(run({recipe(), "-v", "-q"}), 2);
 }
 
