@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Talus authors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
+#include <openvdb/tree/LeafManager.h>
 
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
@@ -135,9 +137,9 @@ ActiveCells active_mask(const fs::path& file, const Contents& contents, const Do
   return cells;
 }
 
-/// Points of one leaf, each to the place its id names.
+/// Points of one leaf, each to the place its id names. Leaves may be read at the same time.
 void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType& leaf, const MapGrid& map,
-               SeedPoints& points, std::vector<bool>& taken) {
+               SeedPoints& points, std::vector<unsigned char>& taken) {
   const AttributeHandle<openvdb::Vec3f> position(leaf.constAttributeArray("P"));
   const AttributeHandle<double> volume(leaf.constAttributeArray(layout::volume)),
       height(leaf.constAttributeArray(layout::height)), extent_x(leaf.constAttributeArray(layout::extent_x)),
@@ -147,8 +149,8 @@ void take_leaf(const fs::path& file, const PointDataGrid::TreeType::LeafNodeType
   for (auto point = leaf.beginIndexOn(); point; ++point) {
     const auto p = static_cast<std::size_t>(id.get(*point));
     if (p >= points.size()) refuse(file, "not a whole domain", "a point has an id beyond the count of points");
-    if (taken[p]) refuse(file, "not a whole domain", "two points have the id " + std::to_string(p));
-    taken[p] = true;
+    if (std::atomic_ref(taken[p]).exchange(1) != 0)
+      refuse(file, "not a whole domain", "two points have the id " + std::to_string(p));
     const openvdb::Coord voxel = point.getCoord();
     const openvdb::Vec3f offset = position.get(*point);  // from the voxel's centre, in voxels
     points.x[p] = map.west + (voxel.x() + 0.5 + static_cast<double>(offset.x())) * map.cell;
@@ -178,8 +180,10 @@ SeedPoints seed_points(const fs::path& file, const Contents& contents, const Map
   for (auto* values : {&points.x, &points.y, &points.height, &points.volume, &points.extent_x, &points.extent_y})
     values->resize(count);
   points.release.resize(count);
-  std::vector<bool> taken(count);
-  for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) take_leaf(file, *leaf, map, points, taken);
+  std::vector<unsigned char> taken(count);
+  openvdb::tree::LeafManager<const PointDataGrid::TreeType>(grid->tree()).foreach ([&](const auto& leaf, std::size_t) {
+    take_leaf(file, leaf, map, points, taken);
+  });
   return points;
 }
 

@@ -7,6 +7,7 @@
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/tools/PointIndexGrid.h>
+#include <openvdb/tree/LeafManager.h>
 
 #include "common/domain/domain.hpp"
 #include "common/domain/domain_layout.hpp"
@@ -45,13 +46,13 @@ void attach(openvdb::points::PointDataGrid& grid, const openvdb::tools::PointInd
             const std::vector<Value>& values) {
   auto& tree = grid.tree();
   openvdb::points::appendAttribute(tree, name, openvdb::points::TypedAttributeArray<Value>::attributeType());
-  for (auto leaf = tree.beginLeaf(); leaf; ++leaf) {
-    openvdb::points::AttributeWriteHandle<Value> attribute(leaf->attributeArray(name));
+  openvdb::tree::LeafManager<openvdb::points::PointDataTree>(tree).foreach ([&](auto& leaf, std::size_t) {
+    openvdb::points::AttributeWriteHandle<Value> attribute(leaf.attributeArray(name));
     openvdb::Index place = 0;
-    for (const auto index : order.tree().probeConstLeaf(leaf->origin())->indices())
+    for (const auto index : order.tree().probeConstLeaf(leaf.origin())->indices())
       attribute.set(place++, values[index]);
     attribute.compact();
-  }
+  });
 }
 
 openvdb::GridBase::Ptr point_grid(const Domain& domain, double bottom) {
