@@ -76,10 +76,7 @@ auto called(int threads, const Work& work) {
 }
 
 talus::On device_called(const std::string& word) {
-  if (word == "auto") return talus::On::automatic;
-  if (word == "cpu") return talus::On::cpu;
-  if (word == "gpu") return talus::On::gpu;
-  if (word == "gpus") return talus::On::gpus;
+  if (const auto on = talus::on_called(word)) return *on;
   throw py::value_error("on = \"" + word + "\": it must be \"auto\", \"cpu\", \"gpu\" or \"gpus\"");
 }
 

@@ -50,18 +50,12 @@ struct SolveFlags {
   int at_a_time = 0;  // 0: as the program decides
 };
 
-On device_called(const std::string& word) {
-  if (word == "cpu") return On::cpu;
-  if (word == "gpus") return On::gpus;
-  return word == "gpu" ? On::gpu : On::automatic;
-}
-
 /// The flags of talus-solve, each setting its member of `given`.
 std::vector<Flag> flags_into(const std::shared_ptr<SolveFlags>& given) {
   return {{.name = "--on",
            .help = "Where to run; auto takes the GPU where there is one, gpus shares one run among all of this machine",
-           .choices = {"auto", "cpu", "gpu", "gpus"},
-           .set = [given](const std::string& word) { given->on = device_called(word); }},
+           .choices = {std::begin(on_words), std::end(on_words)},
+           .set = [given](const std::string& word) { given->on = *on_called(word); }},
           {.name = "--restart",
            .help = "Go on from a checkpoint (default: checkpoint.h5 in the results)",
            .value = "[FILE]",
@@ -134,7 +128,7 @@ Facts run_members_of(StageContext& context, const SolveFlags& flags, const std::
   EnsembleFlags ensemble = ensemble_flags(flags);
   ensemble.on = device.is_gpu() ? On::gpu : On::cpu;
   Facts used = run_ensemble(context, ensemble, domain, options);
-  if (!used.empty()) used.emplace_back("on", device.is_gpu() ? gpu_name(device.gpu().index()) : hardware());
+  if (!used.empty()) used.emplace_back("on", hardware_of(device));
   return used;
 }
 

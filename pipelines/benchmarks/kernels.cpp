@@ -215,8 +215,7 @@ KernelRun time_kernels(const KernelSetting& k, On on) {
   run.method = method_of(k);
   run.shape = shape_of(k);
   run.precision = precision_of(k);
-  run.place = on == On::cpu ? "CPU" : gpu_name();
-  if (on == On::gpus) run.place = fmt::format("{} x {}", GpuDevice::count(), run.place);
+  run.place = device.is_gpu() ? device.gpu().name() : "CPU";
   run.points = solver->particle_count();
   time_steps(k, *solver, run);
   run.bytes = static_cast<double>(solver->bytes());

@@ -180,10 +180,7 @@ int main(int argc, char** argv) {
   const Words words = parse(argc, argv);
   try {
     fs::create_directories(words.out);
-    return kernels(words, solver::choose_device(words.on == "cpu"    ? On::cpu
-                                                : words.on == "gpu"  ? On::gpu
-                                                : words.on == "gpus" ? On::gpus
-                                                                     : On::automatic));
+    return kernels(words, solver::choose_device(*on_called(words.on)));
   } catch (const std::exception& error) {
     fmt::print(stderr, "talus-bench: {}\n", error.what());
     return 2;

@@ -14,11 +14,14 @@
 
 #include "common/large_memory.hpp"
 #include "common/stage/machine.hpp"
+#include "common/stage/stage.hpp"
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/host_room.hpp"
 #include "solver/parallel/pace.hpp"
 
 namespace talus {
+
+std::string hardware_of(const AnyDevice& device) { return device.is_gpu() ? device.gpu().name() : hardware(); }
 
 CpuDevice CpuDevice::make() { return CpuDevice(std::make_shared<Profile>()); }
 

@@ -55,6 +55,7 @@ class GpuDevice {
   static int count();  ///< number of GPUs that CUDA sees; 0 in a binary without CUDA
 
   int index() const;            ///< number of the GPU, or the first, 0 <= index() < count()
+  std::string name() const;     ///< such as "NVIDIA H200", of several "2 x NVIDIA H200"
   CUstream_st* stream() const;  ///< stream of the device
   Profile& profile() const;     ///< times of the kernels that were started on this device
   /// The resources of the device, for the functions of solver/parallel.
@@ -73,8 +74,6 @@ class GpuDevice {
 bool gpu_available();
 /// Whether this process has made a GpuDevice.
 bool gpu_was_used();
-/// The name of a GPU, such as "NVIDIA H200"; empty without one.
-std::string gpu_name(int index = 0);
 
 /// Waits until all that was started on the device is done; it throws std::runtime_error where a kernel has failed.
 inline void synchronise(const CpuDevice&) {}
@@ -141,5 +140,8 @@ class AnyDevice {
  private:
   std::variant<CpuDevice, GpuDevice> device_;
 };
+
+/// The name of a GPU, or of this machine's processor.
+std::string hardware_of(const AnyDevice& device);
 
 }  // namespace talus

@@ -148,6 +148,11 @@ int GpuDevice::count() {
 }
 
 int GpuDevice::index() const { return state_->index; }
+std::string GpuDevice::name() const {
+  cudaDeviceProp properties;
+  check_cuda(cudaGetDeviceProperties(&properties, state_->index), "cudaGetDeviceProperties");
+  return (state_->peers ? std::to_string(state_->peers->count()) + " x " : "") + properties.name;
+}
 CUstream_st* GpuDevice::stream() const { return state_->stream; }
 Profile& GpuDevice::profile() const { return state_->profile; }
 
@@ -163,12 +168,6 @@ bool gpu_available() {
 }
 
 bool gpu_was_used() { return gpu_used; }
-
-std::string gpu_name(int index) {
-  cudaDeviceProp properties;
-  if (!gpu_available() || cudaGetDeviceProperties(&properties, index) != cudaSuccess) return {};
-  return properties.name;
-}
 
 void synchronise(const GpuDevice& device) { device.state().wait("kernel"); }
 
@@ -323,11 +322,11 @@ GpuDevice GpuDevice::make(int) { absent(); }
 GpuDevice GpuDevice::make(const std::vector<int>&) { absent(); }
 int GpuDevice::count() { return 0; }
 int GpuDevice::index() const { absent(); }
+std::string GpuDevice::name() const { absent(); }
 CUstream_st* GpuDevice::stream() const { absent(); }
 Profile& GpuDevice::profile() const { absent(); }
 bool gpu_available() { return false; }
 bool gpu_was_used() { return false; }
-std::string gpu_name(int) { return {}; }
 void synchronise(const GpuDevice&) {}
 
 namespace detail {

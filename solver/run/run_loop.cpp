@@ -203,7 +203,7 @@ RunEnd RunLoop::end(const SolverState& state) const {
 void RunLoop::measure(const RunEnd& end, RunSummary& summary) const {
   const Solver& solver = stepper_.solver();
   const AnyDevice& device = stepper_.device();
-  summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
+  summary.on = hardware_of(device);
   summary.material = options().material.sentence();
   summary.bed = bed_sentence(end.domain, end.options);
   summary.precision = options().precision == Precision::double_ ? "double" : "single";

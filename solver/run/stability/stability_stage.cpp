@@ -55,7 +55,7 @@ RunSummary summary_of_search(const StageContext& context, const Domain& domain, 
   RunSummary summary;
   summary.scene = context.recipe.scene_name();
   summary.title = context.recipe.title();
-  summary.on = device.is_gpu() ? gpu_name(device.gpu().index()) : hardware();
+  summary.on = hardware_of(device);
   summary.precision = "double";
   summary.version = version();
   summary.stop_reason = "factor of safety by strength reduction";

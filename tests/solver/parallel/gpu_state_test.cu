@@ -75,6 +75,7 @@ TEST_P(GpuStates, share_kernels_and_memory_among_peers) {
   numbers.upload(expected);
   EXPECT_EQ(inclusive_sum(device, numbers.data(), numbers.data(), 1000), 999 * 500);
   EXPECT_GT(free_memory(device), 1.5 * free_memory(GpuDevice::make()));
+  EXPECT_EQ(device.name(), "2 x " + GpuDevice::make().name());
 #endif
 }
 
