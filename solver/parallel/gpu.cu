@@ -99,8 +99,8 @@ GpuState::GpuState(const std::vector<int>& gpus) : index(gpus.front()) {
   check_cuda(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "stream");
   keep_memory(index);
   cudaFuncAttributes attributes;  // code made for older devices does not wait
-  starts_early = cudaFuncGetAttributes(&attributes, probe) == cudaSuccess && attributes.binaryVersion >= 90 &&
-                 attributes.ptxVersion >= 90;
+  starts_early = gpus.size() == 1 && cudaFuncGetAttributes(&attributes, probe) == cudaSuccess &&
+                 attributes.binaryVersion >= 90 && attributes.ptxVersion >= 90;
   void* host = nullptr;
   if (cudaMallocHost(&host, LockedMemory::size) == cudaSuccess) locked.memory = static_cast<char*>(host);
   (void)cudaGetLastError();

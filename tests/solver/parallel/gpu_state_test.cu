@@ -41,10 +41,10 @@ TEST_P(GpuStates, tell_which_call_of_cuda_failed) {
 }
 
 #if TALUS_FOR_GPU
-/// Two parts of one GPU as one device, which share kernels of any size.
-GpuDevice two_parts() {
+/// Two parts of one GPU as one device, which share kernels of so many threads.
+GpuDevice two_parts(std::int64_t share_from) {
   const GpuDevice device = GpuDevice::make({0, 0});
-  device.state().peers->share_from = 1;
+  device.state().peers->share_from = share_from;
   return device;
 }
 
@@ -60,7 +60,7 @@ struct ValueOf {
 
 TEST_P(GpuStates, share_kernels_and_memory_among_peers) {
 #if TALUS_FOR_GPU
-  const GpuDevice device = two_parts();
+  const GpuDevice device = two_parts(1);
   constexpr int count = 9000001;  // 36 MB: a piece for each
   ASSERT_GT(count * static_cast<long>(sizeof(int)), StreamMemory::most_kept);
   Buffer<int, GpuDevice> numbers(device, count);
@@ -95,7 +95,8 @@ TEST_P(GpuStates, that_share_a_slide_give_the_bits_of_one) {
       run_to(*solver, integrator == Integrator::newmark ? 0.1 : 0.5);
       return solver->state().points;
     };
-    expect_same_points(points_on(two_parts()), points_on(GpuDevice::make()));
+    const ParticleState alone = points_on(GpuDevice::make());
+    for (const std::int64_t share_from : {1, 4096}) expect_same_points(points_on(two_parts(share_from)), alone);
   }
 #endif
 }
