@@ -19,8 +19,8 @@ def run(recipe, out=None, set=None, on="auto", programs=None, threads=None, call
     Of a recipe it runs every stage whose results are not up to date (`talus run`), and returns the run as
     `talus.open_run` does. recipe: its path, or a Recipe that was read, with its changes. out: folder of the results;
     relative to where you stand. set: values in the place of the recipe's, {"solve.end_time_s": 60.0}; they hold over
-    its changes. on: "auto", "cpu", "gpu" or "gpus". programs: folder of the programs; by default $TALUS_PROGRAMS, else those
-    beside this package, else those on the PATH. threads: the most to take.
+    its changes. on: "auto", "cpu", "gpu" or "gpus". programs: folder of the programs; by default $TALUS_PROGRAMS, else
+    those beside this package, else those on the PATH. threads: the most to take.
 
     Raises ProgramError with the program's own words. What the programs warn of comes as TalusWarning. Ctrl-C lets the
     solver write its checkpoint first; the same call goes on from there.

@@ -54,7 +54,7 @@ test_bash_completes_options_words_and_recipes() {
   touch slide.toml notes.txt
   mkdir folder
   [[ $(completed talus-solve --thr) == --threads ]] || fail "--thr: $(completed talus-solve --thr)"
-  [[ $(completed talus-solve recipe.toml --on '' | paste -sd ' ') == 'auto cpu gpu' ]] || fail "the words of --on"
+  [[ $(completed talus-solve recipe.toml --on '' | paste -sd ' ') == 'auto cpu gpu gpus' ]] || fail "the words of --on"
   [[ $(completed talus-solve '' | paste -sd ' ') == 'slide.toml folder' ]] || fail "$(completed talus-solve '')"
   [[ $(completed talus-solve --out '') == folder ]] || fail "--out offers $(completed talus-solve --out '')"
   [[ -z $(completed talus-solve --threads '') ]] || fail "--threads offers $(completed talus-solve --threads '')"

@@ -45,7 +45,7 @@ struct RunStage : testing::Test {
   std::vector<Flag> own_flags() {
     return {{.name = "--on",
              .help = "Where to run",
-             .choices = {"auto", "cpu", "gpu"},
+             .choices = {"auto", "cpu", "gpu", "gpus"},
              .set = [this](const std::string& word) { on = word; }},
             {.name = "--restart",
              .help = "Go on",

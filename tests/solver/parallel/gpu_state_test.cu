@@ -7,6 +7,7 @@
 #if TALUS_FOR_GPU
 #include "solver/parallel/algorithms.hpp"
 #include "solver/parallel/gpu_state.hpp"
+#include "solver/parallel/peers.hpp"
 #endif
 #include "solver/scene/make_scene.hpp"
 #include "tests/solver/expect.hpp"
