@@ -19,6 +19,8 @@ using namespace py::literals;
 
 namespace {
 
+using talus::Plan;
+using talus::Result;
 using talus::Site;
 
 // ---- calls ----------------------------------------------------------------------------------------------------------
@@ -186,6 +188,7 @@ talus::Raster raster_of(const talus::MapGrid& grid, const Doubles& values) {
   return {grid, {values.data(), values.data() + values.size()}};
 }
 
+// NOLINTNEXTLINE(readability-function-size): the arguments of a Python function
 std::shared_ptr<Site> make_site(const Doubles& bed, const Doubles& thickness, double cell, double west, double south,
                                 double layer_height, const std::array<int, 3>& per_cell, const std::string& crs_wkt) {
   if (bed.ndim() != 2 || thickness.ndim() != 2)
@@ -252,8 +255,7 @@ void define_recipe_and_site(py::module_& m) {
   });
 }
 
-void define_runs(py::module_& m) {
-  using talus::Plan, talus::Result;
+void define_plan(py::module_& m) {
   py::class_<Plan>(m, "Plan", "A run before its first step.")
       .def_property_readonly("grid", [](const Plan& plan) { return dict_of(plan.grid()); })
       .def_property_readonly("points", &Plan::points, "Number of material points at the start.")
@@ -267,6 +269,9 @@ void define_runs(py::module_& m) {
             return called(0, [&, device = device_called(on)] { return plan.description(device); });
           },
           "on"_a = "auto", "A line each on what is on, memory, steps and time. Takes a few steps.");
+}
+
+void define_moment(py::module_& m) {
   py::class_<PyMoment, std::shared_ptr<PyMoment>>(m, "Moment", "A run at one of its records, in a callback.")
       .def_property_readonly(
           "time", [](const PyMoment& moment) { return moment.now().time(); }, "[s]")
@@ -289,6 +294,9 @@ void define_runs(py::module_& m) {
         const auto& [points, owner] = owned(moment.now().points());
         return views_of(points, owner);
       });
+}
+
+void define_result(py::module_& m) {
   py::class_<Result, std::shared_ptr<Result>>(m, "Result", "A finished run.")
       .def_property_readonly("grid", [](const Result& result) { return dict_of(result.maps.grid); })
       .def_property_readonly("summary", [](const Result& result) { return dict_of(result.summary); })
@@ -317,6 +325,9 @@ void define_runs(py::module_& m) {
             return all;
           },
           "Time [s] and thickness [m] of each frame.");
+}
+
+void define_calls(py::module_& m) {
   m.def("plan", [](const std::shared_ptr<Site>& site, const RecipeWords& words, int threads) {
     return called(threads, [&] { return Plan(*site, words.recipe()); });
   });
@@ -339,5 +350,8 @@ void define_runs(py::module_& m) {
 PYBIND11_MODULE(_core, m) {
   m.doc() = "libtalus: prepare, plan and run landslides in this process.";
   define_recipe_and_site(m);
-  define_runs(m);
+  define_plan(m);
+  define_moment(m);
+  define_result(m);
+  define_calls(m);
 }
