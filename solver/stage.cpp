@@ -53,7 +53,7 @@ struct SolveFlags {
 /// The flags of talus-solve, each setting its member of `given`.
 std::vector<Flag> flags_into(const std::shared_ptr<SolveFlags>& given) {
   return {{.name = "--on",
-           .help = "Where to run; auto takes the GPU where there is one, gpus shares one run among all of this machine",
+           .help = "Where to run; auto: on the GPU where there is one; gpus: one run on all GPUs of this machine",
            .choices = {std::begin(on_words), std::end(on_words)},
            .set = [given](const std::string& word) { given->on = *on_called(word); }},
           {.name = "--restart",

@@ -66,7 +66,7 @@ void declare_scene(CLI::App& app, Asked& asked) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   app.add_option("--on", asked.request.on,
-                 "Where talus-solve runs; auto takes the GPU where there is one, gpus all of this machine")
+                 "Where talus-solve runs; auto: on the GPU where there is one; gpus: one run on all GPUs")
       ->type_name("auto|cpu|gpu|gpus")
       ->check(CLI::IsMember({"auto", "cpu", "gpu", "gpus"}).description(""));
   app.add_option("--threads", asked.request.threads, "Threads to take at most")
